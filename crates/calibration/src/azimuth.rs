@@ -5,6 +5,7 @@ use gyrocal::trajectory::{Orientation, rotation_between};
 
 use crate::attitude::{AttitudeHypothesis, AttitudePrior};
 use crate::error::CalibrationError;
+use crate::initial_guess::Start;
 use crate::initial_trajectory::{InitialTrajectory, filtered_trajectory};
 use crate::options::Options;
 use crate::result::AzimuthSearch;
@@ -44,7 +45,8 @@ pub(crate) fn search_azimuth(
     let mut solutions = ranked_solutions(run, rows, settings, hypotheses, options);
     if !solutions.iter().any(|solution| solution.fits) {
         solutions.extend(hypotheses.iter().filter_map(|hypothesis| {
-            let start = windowed_trajectory(run, rows, settings, hypothesis, options).ok()?;
+            let from = Start::CAREFUL;
+            let start = windowed_trajectory(run, rows, settings, hypothesis, options, from).ok()?;
             solve_from(run, rows, settings, hypothesis, &start, options)
         }));
     }

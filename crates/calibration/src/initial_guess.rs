@@ -27,6 +27,10 @@ pub(crate) struct InitialGuess {
 /// above it.
 const POOR_FIT: f64 = 1000.0;
 
+/// The same of a fit in stages, which is the only one: of warm-ups of some deg/h the right minimum lies at two
+/// thousand, a wrong one above a million.
+const POOR_STAGED: f64 = 1e4;
+
 /// Noise of the gyros over the declared one in a filter that follows the samples more closely.
 const LOOSE: f64 = 30.0;
 
@@ -37,6 +41,8 @@ pub(crate) struct Start {
     pub(crate) careful: bool,
     /// By a filter that follows the samples more closely: what the model lacks does not lead it astray.
     pub(crate) loose: bool,
+    /// In stages where a window has no solution: slow, and only for records that no other start fits.
+    pub(crate) staged: bool,
 }
 
 impl Start {
@@ -44,23 +50,30 @@ impl Start {
     pub(crate) const FILTERED: Self = Self {
         careful: false,
         loose: false,
+        staged: false,
     };
 
     pub(crate) const CAREFUL: Self = Self {
         careful: true,
-        loose: false,
+        ..Self::FILTERED
+    };
+
+    /// The last one, if all others fail.
+    const STAGED: Self = Self {
+        staged: true,
+        ..Self::CAREFUL
     };
 
     /// Those that are tried where the fit from the usual one is poor.
     const OTHERS: [Self; 3] = [
         Self::CAREFUL,
         Self {
-            careful: false,
             loose: true,
+            ..Self::FILTERED
         },
         Self {
-            careful: true,
             loose: true,
+            ..Self::CAREFUL
         },
     ];
 
@@ -89,8 +102,8 @@ pub(crate) struct Guessed<G> {
     pub(crate) is_careful: bool,
 }
 
-/// The fit from the usual start; where it is poor or fails, the best from all starts. `quality` gives
-/// the cost of a fit and its number of values.
+/// The fit from the usual start; where it is poor or fails, the best from all starts; where all fail, a good
+/// one in stages. `quality` gives the cost of a fit and its number of values.
 pub(crate) fn best_fit<G, T, E>(
     mut guess: impl FnMut(Start) -> Result<Guessed<G>, E>,
     mut fit: impl FnMut(G) -> Result<T, E>,
@@ -106,10 +119,11 @@ pub(crate) fn best_fit<G, T, E>(
         fit(guessed.guess)
     };
     let first = fit_from(Start::FILTERED, &mut careful);
-    let is_good = |fit: &T| {
+    let is_below = |most: f64, fit: &T| {
         let (cost, values) = quality(fit);
-        cost < POOR_FIT * values as f64
+        cost < most * values as f64
     };
+    let is_good = |fit: &T| is_below(POOR_FIT, fit);
     if first.as_ref().is_ok_and(is_good) {
         return first;
     }
@@ -135,6 +149,12 @@ pub(crate) fn best_fit<G, T, E>(
             break;
         }
     }
+    if best.is_err()
+        && let Ok(staged) = fit_from(Start::STAGED, &mut careful)
+        && is_below(POOR_STAGED, &staged)
+    {
+        best = Ok(staged);
+    }
     best
 }
 
@@ -146,10 +166,9 @@ pub(crate) fn initial_guess(
     start: Start,
 ) -> Result<InitialGuess, CalibrationError> {
     let settings = &start.settings(settings);
-    let careful = start.careful;
     let gross_errors = gross_errors(run.record, settings.accel_noise_g);
     if gross_errors.is_empty() {
-        return guess_from_all_rows(run, settings, options, careful);
+        return guess_from_all_rows(run, settings, options, start);
     }
     let values = gross_errors
         .iter()
@@ -160,7 +179,7 @@ pub(crate) fn initial_guess(
     };
     Ok(InitialGuess {
         gross_errors,
-        ..guess_from_all_rows(&run, settings, options, careful)?
+        ..guess_from_all_rows(&run, settings, options, start)?
     })
 }
 
@@ -168,7 +187,7 @@ fn guess_from_all_rows(
     run: &Run<'_>,
     settings: &FilterSettings<f64>,
     options: &Options,
-    careful: bool,
+    start: Start,
 ) -> Result<InitialGuess, CalibrationError> {
     let hypotheses = attitude_hypotheses(run.record, run.bench)?;
     let (chosen, azimuth) = if let [declared] = hypotheses.as_slice() {
@@ -179,7 +198,7 @@ fn guess_from_all_rows(
     };
     Ok(InitialGuess {
         prior: chosen.prior,
-        start: initial_trajectory(run, settings, &chosen, options, careful)?,
+        start: initial_trajectory(run, settings, &chosen, options, start)?,
         azimuth,
         gross_errors: Vec::new(),
     })
@@ -216,5 +235,27 @@ mod tests {
         assert_eq!(fitted_from(|_| false), [usual, careful, loose, both]);
         assert_eq!(fitted_from(|start| !start.loose), [usual, loose, both]);
         assert_eq!(fitted_from(|_| true), [usual, loose]);
+    }
+
+    #[test]
+    fn stages_are_the_last_start_and_their_fit_must_not_be_poor() {
+        // All fits fail but that in stages, which has this cost a value.
+        let from_stages = |cost: f64| {
+            let mut starts = Vec::new();
+            let guess = |start: Start| {
+                starts.push(start);
+                Ok(Guessed {
+                    guess: start.staged,
+                    is_careful: start.careful,
+                })
+            };
+            let fit = |staged: bool| if staged { Ok(cost) } else { Err("no descent") };
+            let found = best_fit(guess, fit, |cost| (*cost, 1));
+            assert_eq!(starts.last(), Some(&Start::STAGED));
+            assert_eq!(starts.iter().filter(|start| start.staged).count(), 1);
+            found
+        };
+        assert_eq!(from_stages(2000.0), Ok(2000.0));
+        assert_eq!(from_stages(4.8e6), Err("no descent"));
     }
 }

@@ -6,6 +6,7 @@ use gyrocal::{Anchored, Chart, ChartInputs, Drift, FilterSettings, Surveyed};
 
 use crate::attitude::{AttitudeHypothesis, AttitudePrior};
 use crate::error::CalibrationError;
+use crate::initial_guess::Start;
 use crate::initial_trajectory::{InitialTrajectory, filtered_trajectory};
 use crate::layout::Layout;
 use crate::options::Options;
@@ -75,32 +76,34 @@ pub(crate) fn single_run_problem<'a>(
 }
 
 /// The initial trajectory of a whole record: that of the filter, or, where the filter diverges or
-/// `careful` is set, that of [`windowed_trajectory`].
+/// the start is careful, that of [`windowed_trajectory`].
 pub(crate) fn initial_trajectory(
     run: &Run<'_>,
     settings: &FilterSettings<f64>,
     hypothesis: &AttitudeHypothesis,
     options: &Options,
-    careful: bool,
+    from: Start,
 ) -> Result<InitialTrajectory, CalibrationError> {
     let rows = run.record.len();
-    if !careful
+    if !from.careful
         && let Ok(start) = filtered_trajectory(run.record, rows, settings, &hypothesis.start)
         && start.nis_mean < DIVERGED_NIS
     {
         return Ok(start);
     }
-    windowed_trajectory(run, rows, settings, hypothesis, options)
+    windowed_trajectory(run, rows, settings, hypothesis, options, from)
 }
 
 /// The initial trajectory of the first rows by growing windows: each window is solved before the
-/// filter runs over the next one, so that no linearisation is far from the solution.
+/// filter runs over the next one, so that no linearisation is far from the solution. Windows that have none
+/// are solved in stages, if asked for.
 pub(crate) fn windowed_trajectory(
     run: &Run<'_>,
     all: usize,
     settings: &FilterSettings<f64>,
     hypothesis: &AttitudeHypothesis,
     options: &Options,
+    from: Start,
 ) -> Result<InitialTrajectory, CalibrationError> {
     let mut settings_now = *settings;
     let mut attitude = hypothesis.start;
@@ -114,10 +117,16 @@ pub(crate) fn windowed_trajectory(
                 ..start
             });
         }
-        let mut problem =
-            single_run_problem(run, rows, settings, &hypothesis.prior, &start, options);
+        let at_start =
+            || single_run_problem(run, rows, settings, &hypothesis.prior, &start, options);
+        let mut problem = at_start();
+        let mut solved = problem.solve(MAX_PASSES);
+        if from.staged && solved.is_err() {
+            problem = at_start();
+            solved = problem.solve_in_stages(MAX_PASSES);
+        }
         // After a window that does not converge the next one, with more rows, starts as it did.
-        if let Ok(solution) = problem.solve(MAX_PASSES)
+        if let Ok(solution) = solved
             && let Some(uncertainty) = Uncertainty::new(&problem.unknowns, &solution)
         {
             attitude.orientation = problem.runs[0].points[0];

@@ -49,6 +49,10 @@ const FLAT_STEP: f64 = 0.01;
 /// chart to be the cause: they then end at the flat length already.
 const SLOW: f64 = 0.3;
 
+/// Noise of the gyros over that of the fit in the stages of [`Problem::solve_in_stages`]. With the first the
+/// trajectory follows the samples whatever the model lacks; from one to the next the minimum moves little.
+const STAGES: [f64; 6] = [1e5, 1e4, 1e3, 100.0, 10.0, 3.0];
+
 /// The records linearised about the solution.
 #[derive(Clone)]
 pub(crate) struct Solution {
@@ -96,6 +100,25 @@ where
     D: Manifold<3, 3, Inputs = Chart<f64, I>, Point = Orientation>,
     I: Conditions,
 {
+    /// The same as [`Self::solve`] with gyros of far more noise first, then less and less, each stage from the
+    /// solution before it: of records that a large effect leads far from the start.
+    pub(crate) fn solve_in_stages(
+        &mut self,
+        max_passes: usize,
+    ) -> Result<Solution, CalibrationError> {
+        let own: Vec<_> = self.runs.iter().map(|run| run.noise_density).collect();
+        for ratio in STAGES {
+            for (run, own) in self.runs.iter_mut().zip(&own) {
+                run.noise_density = own.map(|density| ratio * ratio * density);
+            }
+            self.solve(max_passes)?;
+        }
+        for (run, own) in self.runs.iter_mut().zip(own) {
+            run.noise_density = own;
+        }
+        self.solve(max_passes)
+    }
+
     /// Iterates to convergence in at most `max_passes` passes; steps that do not lower the cost are halved.
     pub(crate) fn solve(&mut self, max_passes: usize) -> Result<Solution, CalibrationError> {
         let mut point = self.linearise()?;

@@ -253,9 +253,8 @@ fn outliers(
             size_g: value * sigma_g,
             deviation: *deviation,
         });
-        let shown: Vec<Outlier> = all
-            .filter(|outlier| outlier::is_in_readings(&record.accel_g, outlier))
-            .collect();
+        let mut shown: Vec<Outlier> = all.collect();
+        outlier::retain_those_in_readings(&mut shown, &record.accel_g);
         let sizes = shown.iter().map(|outlier| outlier.deviation.abs());
         single_p = single_p.min(search.single_p(sizes.fold(0.0, f64::max)));
         found.extend(shown);

@@ -20,19 +20,35 @@ const ISOLATED_SIGMAS: f64 = 3.0;
 /// that there are outliers: with half a percent of them at 8 sigma the densities are equal at 4.7.
 /// Noise alone exceeds 4.5 once in 150 000 samples.
 const OUTLIER_SIGMAS: f64 = 4.5;
-/// Distance in standard deviations beyond which the readings themselves must show at least half of an outlier.
-/// The error of the cubic through both sides is 1.4 standard deviations: it hides one such outlier in 5000.
-const LARGE_SIGMAS: f64 = 10.0;
-/// Rows from a sample with their weights, for a cubic through both sides and parabolas through either.
-const EXTRAPOLATIONS: [&[(isize, f64)]; 3] = [
-    &[
+/// A prediction of a reading from its neighbours.
+struct Neighbours {
+    /// Rows from the reading, with their weights.
+    weights: &'static [(isize, f64)],
+    /// Distance in standard deviations beyond which it must show at least half of an outlier. Its own error
+    /// hides one in a hundred of such by the cubic, one in ten by a parabola.
+    from_sigmas: f64,
+}
+
+/// The cubic through both sides: its error is 1.4 standard deviations.
+const CUBIC: Neighbours = Neighbours {
+    weights: &[
         (-2, -1.0 / 6.0),
         (-1, 2.0 / 3.0),
         (1, 2.0 / 3.0),
         (2, -1.0 / 6.0),
     ],
-    &[(-3, 1.0), (-2, -3.0), (-1, 3.0)],
-    &[(1, 3.0), (2, -3.0), (3, 1.0)],
+    from_sigmas: 6.5,
+};
+/// The parabolas through either side: 4.5 standard deviations.
+const PARABOLAS: [Neighbours; 2] = [
+    Neighbours {
+        weights: &[(-3, 1.0), (-2, -3.0), (-1, 3.0)],
+        from_sigmas: 10.0,
+    },
+    Neighbours {
+        weights: &[(1, 3.0), (2, -3.0), (3, 1.0)],
+        from_sigmas: 10.0,
+    },
 ];
 
 /// An outlier.
@@ -155,26 +171,42 @@ pub(crate) fn search(series: &[f64], runs: &[Range<usize>], first: usize) -> Sea
     Search { outliers, samples }
 }
 
-/// Whether the readings \[g\] show a large outlier as well. A filter without a large effect that
+/// Keeps the outliers of an axis that the readings \[g\] show as well. A filter without a large effect that
 /// changes fast is led astray, and its innovations jump from row to row; the readings follow the motion.
-pub(crate) fn is_in_readings(accel_g: &[[f64; 3]], outlier: &Outlier) -> bool {
-    if outlier.deviation.abs() < LARGE_SIGMAS {
-        return true;
+pub(crate) fn retain_those_in_readings(outliers: &mut Vec<Outlier>, accel_g: &[[f64; 3]]) {
+    loop {
+        let all = outliers.clone();
+        outliers.retain(|one| is_in_readings(one, &all, accel_g));
+        if outliers.len() == all.len() {
+            return;
+        }
     }
+}
+
+/// Whether the readings show an outlier, one of `all` of its axis.
+fn is_in_readings(outlier: &Outlier, all: &[Outlier], accel_g: &[[f64; 3]]) -> bool {
     let at = |offset: isize| {
         let row = outlier.row.checked_add_signed(offset)?;
         let value = accel_g.get(row)?[outlier.axis];
         (!value.is_nan()).then_some(value)
     };
-    let Some(own) = at(0) else { return true };
-    let off = |weights: &[(isize, f64)]| {
-        let parts = weights.iter().map(|(row, weight)| Some(weight * at(*row)?));
-        Some((own - parts.sum::<Option<f64>>()?).abs())
+    let shows = |by: &Neighbours| {
+        let parts = by.weights.iter();
+        let parts = parts.map(|(row, weight)| Some(weight * at(*row)?));
+        let off = (at(0)? - parts.sum::<Option<f64>>()?).abs();
+        let is_large = outlier.deviation.abs() > by.from_sigmas;
+        is_large.then_some(off > 0.5 * outlier.size_g.abs())
     };
-    // A neighbour may be an outlier too.
-    let most = EXTRAPOLATIONS.iter().filter_map(|weights| off(weights));
-    let most = most.reduce(f64::max);
-    most.is_none_or(|most| most > 0.5 * outlier.size_g.abs())
+    let is_near = |other: &Outlier| (1..=2).contains(&other.row.abs_diff(outlier.row));
+    let cubic = shows(&CUBIC);
+    if !all.iter().any(is_near)
+        && let Some(shown) = cubic
+    {
+        return shown;
+    }
+    // Beside another outlier one side may be sound.
+    let sides: Vec<bool> = PARABOLAS.iter().filter_map(shows).collect();
+    sides.is_empty() || sides.contains(&true) || cubic == Some(true)
 }
 
 #[derive(Clone, Debug)]
@@ -301,7 +333,7 @@ fn side(masked: &[f64], rows: impl Iterator<Item = usize>, from: usize) -> Vec<(
 mod tests {
     use gyrocal_statistics::deviates::Draw;
 
-    use super::search;
+    use super::{Outlier, retain_those_in_readings, search};
 
     /// Noise of unit variance about a parabola that rises by `bend` over the first row.
     fn bent(seed: u64, bend: f64) -> Vec<f64> {
@@ -341,6 +373,64 @@ mod tests {
             let found = search(&series, &[0..100, 100..300], 16);
             let rows: Vec<usize> = found.outliers.iter().map(|one| one.0).collect();
             assert_eq!(rows, [108], "{seed}");
+        }
+    }
+
+    /// Readings of a platform that turns with the Earth's rate, a row each four minutes, with noise of a
+    /// hundred thousandth and errors of these rows in the same unit.
+    fn readings(seed: u64, errors: &[(usize, f64)]) -> Vec<[f64; 3]> {
+        let mut random = Draw::new(seed, 1);
+        let mut all: Vec<[f64; 3]> = (0..100)
+            .map(|row| {
+                [
+                    (0.0175 * f64::from(row)).sin() + 1e-5 * random.normal(),
+                    0.0,
+                    0.0,
+                ]
+            })
+            .collect();
+        for (row, error) in errors {
+            all[*row][0] += 1e-5 * error;
+        }
+        all
+    }
+
+    fn outliers(of: &[(usize, f64)]) -> Vec<Outlier> {
+        let outlier = |(row, deviation): &(usize, f64)| Outlier {
+            row: *row,
+            axis: 0,
+            size_g: 1e-5 * deviation,
+            deviation: *deviation,
+        };
+        of.iter().map(outlier).collect()
+    }
+
+    #[test]
+    fn outliers_of_the_readings_are_kept() {
+        // At both ends, among sound readings, small, and beside each other.
+        let errors = [
+            (0, 40.0),
+            (30, 12.0),
+            (50, 5.0),
+            (70, 60.0),
+            (71, -60.0),
+            (99, -40.0),
+        ];
+        for seed in 0..20 {
+            let mut found = outliers(&errors);
+            retain_those_in_readings(&mut found, &readings(seed, &errors));
+            assert_eq!(found, outliers(&errors), "{seed}");
+        }
+    }
+
+    #[test]
+    fn outliers_that_only_the_filter_has_are_dropped() {
+        let mut jumping: Vec<(usize, f64)> = (20..46).map(|row| (row, 1000.0)).collect();
+        jumping.extend([(60, 12.0), (80, -30.0)]);
+        for seed in 0..20 {
+            let mut found = outliers(&jumping);
+            retain_those_in_readings(&mut found, &readings(seed, &[]));
+            assert!(found.is_empty(), "{seed}: {found:?}");
         }
     }
 }

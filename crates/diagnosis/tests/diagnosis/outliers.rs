@@ -72,3 +72,39 @@ fn what_a_cause_explains_is_no_outlier() {
         found.audit.outliers
     );
 }
+
+/// A warm-up that turns the platform by a third of a degree in the first hour: the filter without it is led
+/// astray, so that no fit converges from its trajectory, and its innovations jump where no reading does.
+#[test]
+fn a_quick_warm_up_is_neither_hopeless_nor_an_outlier() {
+    let parameters = [("size", 0.4342), ("time_constant_h", 0.717)];
+    let warm_up = Hidden::new("gyro_x.warmup", &parameters).unwrap();
+    let simulation = simulate(&Scenario {
+        seed: 1,
+        latitude_deg: -7.6,
+        coefficients: Coefficients {
+            bias_deg_per_h: [-0.5516, -0.8654, 0.4793],
+            g_deg_per_h_per_g: [-0.26, -0.2441, -0.0553],
+            gg_deg_per_h_per_g2: [0.0793, 0.0127, 0.0452],
+        },
+        initial: InitialAttitude::AnglesDeg([-33.6, 18.7, -87.0]),
+        interval_s: 240.0,
+        duration_s: 213_360.0,
+        gaps_s: vec![[14_160.0, 37_680.0], [119_760.0, 125_040.0]],
+        hidden: vec![warm_up],
+        ..Scenario::default()
+    })
+    .unwrap();
+    let options = DiagnoseOptions::default();
+    let result = diagnose(&simulation.record, &simulation.bench, &options)
+        .unwrap()
+        .result;
+    let names: Vec<&str> = result.findings.iter().map(|f| f.effect.as_str()).collect();
+    assert_eq!(names, ["gyro_x.warmup"]);
+    for (found, (name, truth)) in result.findings[0].parameters.iter().zip(parameters) {
+        assert_eq!(found.name, name);
+        // One in sixteen thousand is farther off than four sigmas.
+        let off = (found.estimate - truth).abs();
+        assert!(off < 4.0 * found.sigma.unwrap(), "{name}: {found:?}");
+    }
+}
