@@ -77,7 +77,7 @@ fn what_a_cause_explains_is_no_outlier() {
 /// astray, so that no fit converges from its trajectory, and its innovations jump where no reading does.
 #[test]
 fn a_quick_warm_up_is_neither_hopeless_nor_an_outlier() {
-    let parameters = [("size", 0.4342), ("time_constant_h", 0.717)];
+    let parameters = [("size", 0.434), ("time_constant_h", 0.717)];
     let warm_up = Hidden::new("gyro_x.warmup", &parameters).unwrap();
     let simulation = simulate(&Scenario {
         seed: 1,
