@@ -120,10 +120,12 @@ fn interval(
         .copied()
         .enumerate()
         .max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let quadratic = student_quantile(0.5 * (1.0 + COVERAGE), degrees).map(|t| t.powi(2));
+    let quadratic = quadratic.unwrap_or(QUADRATIC);
+    // Less than that of a quadratic likelihood is an error of the draws, or of a shape that no record tells.
     let limit = losses(profile, best, draws)
         .and_then(|losses| limit(&losses, degrees))
-        .or_else(|| Some(student_quantile(0.5 * (1.0 + COVERAGE), degrees)?.powi(2)))
-        .unwrap_or(QUADRATIC);
+        .map_or(quadratic, |drawn| drawn.max(quadratic));
     let deviance: Vec<f64> = statistics.iter().map(|other| largest - other).collect();
     let pieces = pieces(places, &deviance, limit);
     let sigma = match pieces.as_slice() {
