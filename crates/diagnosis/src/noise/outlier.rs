@@ -20,36 +20,9 @@ const ISOLATED_SIGMAS: f64 = 3.0;
 /// that there are outliers: with half a percent of them at 8 sigma the densities are equal at 4.7.
 /// Noise alone exceeds 4.5 once in 150 000 samples.
 const OUTLIER_SIGMAS: f64 = 4.5;
-/// A prediction of a reading from its neighbours.
-struct Neighbours {
-    /// Rows from the reading, with their weights.
-    weights: &'static [(isize, f64)],
-    /// Distance in standard deviations beyond which it must show at least half of an outlier. Its own error
-    /// hides one in a hundred of such by the cubic, one in ten by a parabola.
-    from_sigmas: f64,
-}
-
-/// The cubic through both sides: its error is 1.4 standard deviations.
-const CUBIC: Neighbours = Neighbours {
-    weights: &[
-        (-2, -1.0 / 6.0),
-        (-1, 2.0 / 3.0),
-        (1, 2.0 / 3.0),
-        (2, -1.0 / 6.0),
-    ],
-    from_sigmas: 6.5,
-};
-/// The parabolas through either side: 4.5 standard deviations.
-const PARABOLAS: [Neighbours; 2] = [
-    Neighbours {
-        weights: &[(-3, 1.0), (-2, -3.0), (-1, 3.0)],
-        from_sigmas: 10.0,
-    },
-    Neighbours {
-        weights: &[(1, 3.0), (2, -3.0), (3, 1.0)],
-        from_sigmas: 10.0,
-    },
-];
+/// Half of an outlier over the standard deviation of a prediction from its neighbours above which that must show
+/// it: noise hides one such in a hundred.
+const SHOWN_SIGMAS: f64 = 2.3;
 
 /// An outlier.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -174,39 +147,68 @@ pub(crate) fn search(series: &[f64], runs: &[Range<usize>], first: usize) -> Sea
 /// Keeps the outliers of an axis that the readings \[g\] show as well. A filter without a large effect that
 /// changes fast is led astray, and its innovations jump from row to row; the readings follow the motion.
 pub(crate) fn retain_those_in_readings(outliers: &mut Vec<Outlier>, accel_g: &[[f64; 3]]) {
-    loop {
-        let all = outliers.clone();
-        outliers.retain(|one| is_in_readings(one, &all, accel_g));
-        if outliers.len() == all.len() {
-            return;
-        }
+    let mut sound = vec![true; accel_g.len()];
+    for outlier in outliers.iter() {
+        sound[outlier.row] = false;
     }
+    outliers.retain(|one| {
+        let by_sound = shown_by(one, accel_g, |row| sound[row]);
+        // Amid many outliers no reading is sound: all are taken.
+        by_sound.or_else(|| shown_by(one, accel_g, |_| true)) != Some(false)
+    });
 }
 
-/// Whether the readings show an outlier, one of `all` of its axis.
-fn is_in_readings(outlier: &Outlier, all: &[Outlier], accel_g: &[[f64; 3]]) -> bool {
-    let at = |offset: isize| {
-        let row = outlier.row.checked_add_signed(offset)?;
-        let value = accel_g.get(row)?[outlier.axis];
-        (!value.is_nan()).then_some(value)
+/// Whether a prediction from the nearest of the readings `taken` shows an outlier: the cubic through two on
+/// either side, or the parabola through three of one; `None` if noise may hide it from each.
+fn shown_by(
+    outlier: &Outlier,
+    accel_g: &[[f64; 3]],
+    taken: impl Fn(usize) -> bool,
+) -> Option<bool> {
+    let Outlier { row, axis, .. } = *outlier;
+    let own = accel_g[row][axis];
+    let value = |other: &usize| taken(*other) && !accel_g[*other][axis].is_nan();
+    let at = |other: usize| (other as f64 - row as f64, accel_g[other][axis]);
+    let near = row.saturating_sub(REACH)..(row + REACH + 1).min(accel_g.len());
+    let before: Vec<_> = (near.start..row)
+        .rev()
+        .filter(value)
+        .map(at)
+        .take(3)
+        .collect();
+    let after: Vec<_> = (row + 1..near.end).filter(value).map(at).take(3).collect();
+    let two_of_each = before.len() >= 2 && after.len() >= 2;
+    let both = two_of_each.then(|| [&before[..2], &after[..2]].concat());
+    let one_side = [before, after].into_iter().filter(|side| side.len() == 3);
+    let shows = |points: Vec<(f64, f64)>| {
+        let (predicted, spread) = at_zero(&points);
+        let half = 0.5 * outlier.deviation.abs();
+        (half > SHOWN_SIGMAS * spread)
+            .then_some((own - predicted).abs() > 0.5 * outlier.size_g.abs())
     };
-    let shows = |by: &Neighbours| {
-        let parts = by.weights.iter();
-        let parts = parts.map(|(row, weight)| Some(weight * at(*row)?));
-        let off = (at(0)? - parts.sum::<Option<f64>>()?).abs();
-        let is_large = outlier.deviation.abs() > by.from_sigmas;
-        is_large.then_some(off > 0.5 * outlier.size_g.abs())
+    both.into_iter()
+        .chain(one_side)
+        .filter_map(shows)
+        .reduce(|any, one| any || one)
+}
+
+/// The polynomial through points at zero (Lagrange), and the standard deviation of a value there less it, for
+/// values of unit variance.
+fn at_zero(points: &[(f64, f64)]) -> (f64, f64) {
+    let weight = |(index, (own, _)): (usize, &(f64, f64))| -> f64 {
+        let others = points
+            .iter()
+            .enumerate()
+            .filter(|(other, _)| *other != index);
+        others.map(|(_, (at, _))| at / (at - own)).product()
     };
-    let is_near = |other: &Outlier| (1..=2).contains(&other.row.abs_diff(outlier.row));
-    let cubic = shows(&CUBIC);
-    if !all.iter().any(is_near)
-        && let Some(shown) = cubic
-    {
-        return shown;
-    }
-    // Beside another outlier one side may be sound.
-    let sides: Vec<bool> = PARABOLAS.iter().filter_map(shows).collect();
-    sides.is_empty() || sides.contains(&true) || cubic == Some(true)
+    let weights: Vec<f64> = points.iter().enumerate().map(weight).collect();
+    let value = weights
+        .iter()
+        .zip(points)
+        .map(|(weight, (_, value))| weight * value);
+    let squares: f64 = weights.iter().map(|weight| weight * weight).sum();
+    (value.sum(), (1.0 + squares).sqrt())
 }
 
 #[derive(Clone, Debug)]
