@@ -70,7 +70,8 @@ impl NotCalibrated {
             }
             Why::NoDescent { .. } | Why::NotConverged { .. } => {
                 return "check the record for an attitude jump, a restart or a run of bad values: \
-                        --streaming shows the misfit of one pass";
+                        --streaming shows the misfit of one pass; leave out the first hours if a gyro \
+                        warms up by degrees an hour, and the angles that belong to them";
             }
             Why::NotPositiveDefinite => true,
             Why::Filter { source, .. } | Why::Pass { source, .. } => matches!(

@@ -67,7 +67,8 @@ impl NotDiagnosed {
             }
             Why::Calibration(Fit::NoDescent { .. } | Fit::NotConverged { .. }) => {
                 "check the record for an attitude jump, a restart or a run of bad values: `gyrocal \
-                 calibrate --streaming` shows the misfit of one pass"
+                 calibrate --streaming` shows the misfit of one pass; leave out the first hours if a \
+                 gyro warms up by degrees an hour, and the angles that belong to them"
             }
             _ => {
                 "the values of the bench file may be implausible, or inconsistent with the record: \
