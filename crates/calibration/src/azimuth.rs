@@ -5,13 +5,13 @@ use gyrocal::trajectory::{Orientation, rotation_between};
 
 use crate::attitude::{AttitudeHypothesis, AttitudePrior};
 use crate::error::CalibrationError;
-use crate::initial_guess::Start;
 use crate::initial_trajectory::{InitialTrajectory, filtered_trajectory};
 use crate::options::Options;
 use crate::result::AzimuthSearch;
 use crate::run::Run;
 use crate::single_run::{DIVERGED_NIS, single_run_problem, windowed_trajectory};
 use crate::solve::MAX_PASSES;
+use crate::start::Start;
 use crate::uncertainty::Uncertainty;
 
 /// Rows over which azimuths are compared: two days of minutes.

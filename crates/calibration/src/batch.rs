@@ -10,7 +10,7 @@ use crate::coefficients::PARAMETERS;
 use crate::error::CalibrationError;
 use crate::fit::FitStatistics;
 use crate::gyro_axes::GyroAxes;
-use crate::initial_guess::{Guessed, Start, best_fit, initial_guess};
+use crate::initial_guess::{Guessed, best_fit, initial_guess};
 use crate::layout::{Layout, SiteQuantity};
 use crate::noise::{self, NoiseEstimate};
 use crate::observability::unobservable;
@@ -22,6 +22,7 @@ use crate::run::{Conditions, Run};
 use crate::settings::filter_settings;
 use crate::single_run::run_problem;
 use crate::solve::{MAX_PASSES, Solution};
+use crate::start::Start;
 use crate::uncertainty::Uncertainty;
 use crate::variances::{UncertaintySource, Variances};
 

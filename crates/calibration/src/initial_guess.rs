@@ -11,6 +11,7 @@ use crate::options::Options;
 use crate::result::AzimuthSearch;
 use crate::run::Run;
 use crate::single_run::initial_trajectory;
+use crate::start::Start;
 
 /// Initial trajectory of a run, the attitude prior that belongs to it, and how its azimuth was
 /// found.
@@ -30,70 +31,6 @@ const POOR_FIT: f64 = 1000.0;
 /// The same of a fit in stages, which is the only one: of warm-ups of some deg/h the right minimum lies at two
 /// thousand, a wrong one above a million.
 const POOR_STAGED: f64 = 1e4;
-
-/// Noise of the gyros over the declared one in a filter that follows the samples more closely.
-const LOOSE: f64 = 30.0;
-
-/// How the initial guess of a fit is made.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Start {
-    /// By growing windows even if the filter does not diverge.
-    pub(crate) careful: bool,
-    /// By a filter that follows the samples more closely: what the model lacks does not lead it astray.
-    pub(crate) loose: bool,
-    /// In stages where a window has no solution: slow, and only for records that no other start fits.
-    pub(crate) staged: bool,
-}
-
-impl Start {
-    /// The usual one, sufficient for nearly every record.
-    pub(crate) const FILTERED: Self = Self {
-        careful: false,
-        loose: false,
-        staged: false,
-    };
-
-    pub(crate) const CAREFUL: Self = Self {
-        careful: true,
-        ..Self::FILTERED
-    };
-
-    /// The last one, if all others fail.
-    const STAGED: Self = Self {
-        staged: true,
-        ..Self::CAREFUL
-    };
-
-    /// Those that are tried where the fit from the usual one is poor.
-    const OTHERS: [Self; 3] = [
-        Self::CAREFUL,
-        Self {
-            loose: true,
-            ..Self::FILTERED
-        },
-        Self {
-            loose: true,
-            ..Self::CAREFUL
-        },
-    ];
-
-    /// The same by growing windows.
-    fn carefully(self) -> Self {
-        Self {
-            careful: true,
-            ..self
-        }
-    }
-
-    /// Settings of the filter that makes the guess.
-    fn settings(self, settings: &FilterSettings<f64>) -> FilterSettings<f64> {
-        let factor = if self.loose { LOOSE } else { 1.0 };
-        FilterSettings {
-            drift_noise_deg_per_h: factor * settings.drift_noise_deg_per_h,
-            ..*settings
-        }
-    }
-}
 
 /// What a fit starts from.
 pub(crate) struct Guessed<G> {

@@ -129,6 +129,7 @@ mod settings;
 mod single_run;
 mod solve;
 mod spread;
+mod start;
 mod streaming;
 mod temperature;
 mod uncertainty;

@@ -6,13 +6,13 @@ use gyrocal::{Anchored, Chart, ChartInputs, Drift, FilterSettings, Surveyed};
 
 use crate::attitude::{AttitudeHypothesis, AttitudePrior};
 use crate::error::CalibrationError;
-use crate::initial_guess::Start;
 use crate::initial_trajectory::{InitialTrajectory, filtered_trajectory};
 use crate::layout::Layout;
 use crate::options::Options;
 use crate::problem::{Problem, RunProblem};
 use crate::run::{Run, WeightedRows};
 use crate::solve::MAX_PASSES;
+use crate::start::Start;
 use crate::uncertainty::Uncertainty;
 use gyrocal_hypothesis::ExtraColumns;
 

@@ -9,13 +9,14 @@ use super::{FittedPlatform, NoiseModel, Parts, of_site, walks};
 use crate::coefficients::PARAMETERS;
 use crate::error::CalibrationError;
 use crate::gyro_axes::GyroAxes;
-use crate::initial_guess::{Guessed, InitialGuess, Start, best_fit, initial_guess};
+use crate::initial_guess::{Guessed, InitialGuess, best_fit, initial_guess};
 use crate::law::{Law, LawInputs};
 use crate::options::Options;
 use crate::problem::{Problem, RunProblem, Unknown};
 use crate::run::{Run, WeightedRows};
 use crate::settings::filter_settings;
 use crate::solve::MAX_PASSES;
+use crate::start::Start;
 
 impl<'a> FittedPlatform<'a> {
     /// Fits the nominal model; what the bench declares uncertain of its site is in the extension.
