@@ -13,6 +13,7 @@ mod lattice;
 mod likelihood;
 mod open_loop;
 mod outlier;
+mod readings;
 mod spectrum;
 
 pub use audit::{AuditOptions, DeclaredNoise, audit_noise};

@@ -9,6 +9,7 @@ use super::lattice::{self, Lattice};
 use super::likelihood::{CORRELATION, WALK};
 use super::open_loop::{open_loop, runs};
 use super::outlier::{self, Outlier};
+use super::readings;
 use super::spectrum::Spectrum;
 use crate::error::DiagnosisError;
 use crate::result::Gaps;
@@ -254,7 +255,7 @@ fn outliers(
             deviation: *deviation,
         });
         let mut shown: Vec<Outlier> = all.collect();
-        outlier::retain_those_in_readings(&mut shown, &record.accel_g);
+        readings::retain_those_in_readings(&mut shown, &record.accel_g);
         let sizes = shown.iter().map(|outlier| outlier.deviation.abs());
         single_p = single_p.min(search.single_p(sizes.fold(0.0, f64::max)));
         found.extend(shown);

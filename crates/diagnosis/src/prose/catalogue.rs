@@ -67,7 +67,6 @@ pub fn tested(effect: &Effect) -> &'static str {
     }
 }
 
-/// A formula with blanks, at which a line may break.
 /// Whether an id is that of correlated noise: its slow part looks like noise of the gyros.
 #[must_use]
 pub fn is_correlation(id: &str) -> bool {
@@ -85,6 +84,7 @@ fn kind(id: &str) -> Option<EffectKind> {
     row.map(|row| row.kind)
 }
 
+/// A formula with blanks, at which a line may break.
 fn spaced(formula: &str) -> String {
     let spaced = formula.replace('*', " * ").replace('/', " / ");
     spaced.replace(',', ", ").replace(",  ", ", ")
