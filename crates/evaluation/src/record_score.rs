@@ -77,6 +77,9 @@ pub struct FindingScore {
     /// `true` if the effect has exact equivalents and the finding lists none.
     #[serde(rename = "alone")]
     pub lacks_equivalents: bool,
+    /// Probability that the cause is not in the catalogue; `None` if the search was cut.
+    #[serde(default)]
+    pub none_of_these: Option<f64>,
 }
 
 /// Result of a baseline method.
@@ -107,6 +110,14 @@ impl RecordScore {
         self.findings
             .first()
             .map_or(0, |finding| 1 + finding.alternatives.len())
+    }
+
+    /// `true` if the diagnosis says that its findings are not the whole answer: the remainder is unexplained,
+    /// or a cause outside of the catalogue is likelier than the likeliest name.
+    #[must_use]
+    pub fn tells_of_another(&self) -> bool {
+        let stated = self.findings.iter().filter_map(|one| one.none_of_these);
+        self.unexplained.is_some() || stated.reduce(f64::min).is_some_and(|none| none > 0.5)
     }
 
     /// `true` if each injected effect is in the confidence set of a finding of its own.
@@ -150,6 +161,7 @@ mod tests {
                 .collect(),
             equivalents: Vec::new(),
             lacks_equivalents: false,
+            none_of_these: None,
         }
     }
 
@@ -166,9 +178,8 @@ mod tests {
         }
     }
 
-    #[test]
-    fn two_effects_need_a_finding_each() {
-        let pair = |findings: Vec<FindingScore>| RecordScore {
+    fn pair(findings: Vec<FindingScore>) -> RecordScore {
+        RecordScore {
             hidden: vec![hidden("gyro_x.g_y"), hidden("gyro_y.ramp")],
             verdict: "effects-found".to_owned(),
             findings,
@@ -179,7 +190,29 @@ mod tests {
             nearest: Vec::new(),
             coefficients: None,
             methods: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn the_likeliest_name_tells_whether_there_is_another_cause() {
+        let stated = |none_of_these: Option<f64>| FindingScore {
+            none_of_these,
+            ..found("gyro_x.g_y", &[])
         };
+        let tells = |findings: Vec<FindingScore>| pair(findings).tells_of_another();
+        assert!(tells(vec![stated(Some(0.9)), stated(Some(0.6))]));
+        assert!(!tells(vec![stated(Some(0.9)), stated(Some(0.4))]));
+        // Of a search that was cut nothing is known.
+        assert!(!tells(vec![stated(None)]));
+        let unexplained = RecordScore {
+            unexplained: Some("a line".to_owned()),
+            ..pair(Vec::new())
+        };
+        assert!(unexplained.tells_of_another());
+    }
+
+    #[test]
+    fn two_effects_need_a_finding_each() {
         // One finding whose set holds both is not enough.
         let both = found("gyro_x.g_y", &["gyro_y.ramp"]);
         assert!(!pair(vec![both.clone()]).each_in_its_set());

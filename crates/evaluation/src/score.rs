@@ -247,6 +247,7 @@ fn finding_score(finding: &Finding) -> FindingScore {
             .map(|equivalent| equivalent.effect.clone())
             .collect(),
         lacks_equivalents: has_equivalents && finding.equivalents.is_empty(),
+        none_of_these: finding.none_of_these,
     }
 }
 

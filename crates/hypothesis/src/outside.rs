@@ -66,26 +66,25 @@ struct Direction {
 impl RichAlternative {
     fn new<F: FittedModel>(fitted: &F, rows: &Rows) -> Result<Self, F::Error> {
         let plant = fitted.plant();
-        let at_rows = families(rows, &Sampling::rows(rows));
-        let in_steps = families(rows, &Sampling::steps(rows));
         let mut blocks = Vec::new();
-        // One channel after the other: columns of outputs are large.
-        for channel in ChannelIndex::all(plant) {
-            let families = match channel {
-                ChannelIndex::Rate(_) => &in_steps,
-                ChannelIndex::Output(_) => &at_rows,
-            };
-            let all = families.iter().flat_map(|family| family.functions.iter());
-            let columns: Vec<Column> = all.map(|values| column(plant, channel, values)).collect();
-            if columns.is_empty() {
-                continue;
-            }
-            let bank = ScoreBank::conditional(fitted, &columns)?;
-            let mut first = 0;
-            for family in families {
-                let places: Vec<usize> = (first..first + family.functions.len()).collect();
-                first += places.len();
-                blocks.push(directions(&bank, &places, family.is_smooth));
+        // One sampling, and one channel, after the other: functions and columns of outputs are large.
+        for sampling in [Sampling::steps(rows), Sampling::rows(rows)] {
+            let families = families(rows, &sampling);
+            let channels = ChannelIndex::all(plant).into_iter();
+            for channel in channels.filter(|channel| sampling.is_that_of(*channel)) {
+                let all = families.iter().flat_map(|family| &family.functions);
+                let columns: Vec<Column> =
+                    all.map(|values| column(plant, channel, values)).collect();
+                if columns.is_empty() {
+                    continue;
+                }
+                let bank = ScoreBank::conditional(fitted, &columns)?;
+                let mut first = 0;
+                for family in &families {
+                    let places: Vec<usize> = (first..first + family.functions.len()).collect();
+                    first += places.len();
+                    blocks.push(directions(&bank, &places, family.is_smooth));
+                }
             }
         }
         Ok(Self { blocks })
@@ -182,8 +181,8 @@ fn factor(count: usize, is_smooth: bool) -> DMatrix<f64> {
     )
 }
 
-fn column(plant: &Plant, channel: ChannelIndex, values: &[f64]) -> Column {
-    let values: Arc<[f64]> = values.into();
+fn column(plant: &Plant, channel: ChannelIndex, values: &Arc<[f64]>) -> Column {
+    let values = Arc::clone(values);
     match channel {
         ChannelIndex::Rate(rate) => Column::TimeProfile {
             parameter: plant.rates[rate].constant,

@@ -1,9 +1,12 @@
 //! Functions that a cause outside of the catalogue may follow: of covariates and regressors, their products,
 //! their past and time.
 
+use std::sync::Arc;
+
 use gyrocal_statistics::followed_with_play;
 use gyrocal_statistics::math::exp;
 
+use crate::pattern::ChannelIndex;
 use crate::rows::Rows;
 
 /// Knots of functions of a covariate and of time.
@@ -17,7 +20,7 @@ const LAGS_H: [f64; 3] = [0.5, 2.0, 8.0];
 
 /// A family of functions: values of each in time, and how their amplitudes are correlated.
 pub(crate) struct Family {
-    pub(crate) functions: Vec<Vec<f64>>,
+    pub(crate) functions: Vec<Arc<[f64]>>,
     pub(crate) is_smooth: bool,
 }
 
@@ -41,6 +44,11 @@ impl Sampling {
             time_s: (0..rows.len().saturating_sub(1)).map(middle).collect(),
             in_steps: true,
         }
+    }
+
+    /// Whether a channel is sampled so: rates act in steps, outputs are at rows.
+    pub(crate) fn is_that_of(&self, channel: ChannelIndex) -> bool {
+        self.in_steps == matches!(channel, ChannelIndex::Rate(_))
     }
 
     /// A series over the rows at these times.
@@ -117,7 +125,7 @@ fn range(values: &[f64]) -> f64 {
     most - least
 }
 
-fn product(one: &[f64], other: &[f64]) -> Vec<f64> {
+fn product(one: &[f64], other: &[f64]) -> Arc<[f64]> {
     one.iter()
         .zip(other)
         .map(|(one, other)| one * other)
@@ -125,7 +133,7 @@ fn product(one: &[f64], other: &[f64]) -> Vec<f64> {
 }
 
 /// Piecewise linear functions of a variable, from its least to its largest value.
-fn hats(values: &[f64]) -> Vec<Vec<f64>> {
+fn hats(values: &[f64]) -> Vec<Arc<[f64]>> {
     let [least, most] = ends(values);
     let spacing = (most - least) / (KNOTS - 1) as f64;
     let hat =
@@ -137,14 +145,14 @@ fn hats(values: &[f64]) -> Vec<Vec<f64>> {
 
 /// Functions that switch about zero, of a variable that changes its sign: the sign, the magnitude, dead
 /// zones.
-fn switches(values: &[f64]) -> Vec<Vec<f64>> {
+fn switches(values: &[f64]) -> Vec<Arc<[f64]>> {
     let [least, most] = ends(values);
     if least >= 0.0 || most <= 0.0 {
         return Vec::new();
     }
     let half = 0.5 * (most - least);
     let of = |function: &dyn Fn(f64) -> f64| values.iter().map(|value| function(*value)).collect();
-    let mut all: Vec<Vec<f64>> = vec![of(&f64::signum), of(&f64::abs)];
+    let mut all: Vec<Arc<[f64]>> = vec![of(&f64::signum), of(&f64::abs)];
     for width in WIDTHS {
         let width = width * half;
         all.push(of(&|value| value - value.clamp(-width, width)));
@@ -154,7 +162,7 @@ fn switches(values: &[f64]) -> Vec<Vec<f64>> {
 
 /// Functions of the past of a variable: its direction, what a play lags behind, what a low-pass lags
 /// behind.
-fn memory(time_s: &[f64], values: &[f64]) -> Vec<Vec<f64>> {
+fn memory(time_s: &[f64], values: &[f64]) -> Vec<Arc<[f64]>> {
     let half = 0.5 * range(values);
     let plays = WIDTHS.map(|width| followed_with_play(values, width * half));
     // The narrowest play tells the direction.
@@ -165,7 +173,7 @@ fn memory(time_s: &[f64], values: &[f64]) -> Vec<Vec<f64>> {
     all
 }
 
-fn difference(values: &[f64], other: &[f64]) -> Vec<f64> {
+fn difference(values: &[f64], other: &[f64]) -> Arc<[f64]> {
     values
         .iter()
         .zip(other)
@@ -174,7 +182,7 @@ fn difference(values: &[f64], other: &[f64]) -> Vec<f64> {
 }
 
 /// Sign of the difference; zero where there is none.
-fn direction(values: &[f64], other: &[f64]) -> Vec<f64> {
+fn direction(values: &[f64], other: &[f64]) -> Arc<[f64]> {
     let differences = difference(values, other);
     let sign = |value: &f64| if *value == 0.0 { 0.0 } else { value.signum() };
     differences.iter().map(sign).collect()
@@ -196,7 +204,7 @@ fn low_pass(time_s: &[f64], values: &[f64], lag_h: f64) -> Vec<f64> {
 }
 
 /// Products of two and of three covariates.
-fn products(values: &[Vec<f64>]) -> Vec<Vec<f64>> {
+fn products(values: &[Vec<f64>]) -> Vec<Arc<[f64]>> {
     let mut all = Vec::new();
     for i in 0..values.len() {
         for j in i..values.len() {

@@ -19,6 +19,7 @@ fn score(own: &[&str], selected: &[&str], coefficients: CoefficientScore) -> Rec
             .collect(),
         equivalents: Vec::new(),
         lacks_equivalents: false,
+        none_of_these: None,
     });
     let names: Vec<String> = selected.iter().map(|name| (*name).to_owned()).collect();
     RecordScore {
