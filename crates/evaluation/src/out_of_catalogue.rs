@@ -1,8 +1,9 @@
 //! Effects that are not in the catalogue, scaled to a strength given the findings of the diagnosis.
 //!
 //! Such an effect has no signature in the linearised model. Its strength is the length of the change
-//! in the whitened residuals: the fitted model, with the effects that the diagnosis named in it, is
-//! fitted to the record with and without the effect, the noise of both being the same.
+//! in the whitened residuals: the fitted model, with the effects and the noise that the diagnosis named in it,
+//! is fitted to the record with and without the effect. Beside a random walk that takes the effect up little of
+//! it is left, as no record tells a slow function of time from a walk.
 
 use gyrocal_calibration::{FittedPlatform, Options, Run};
 use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, diagnose};
@@ -48,7 +49,7 @@ pub(crate) fn score_out_of_catalogue(
     random: &mut Draw,
 ) -> Result<RecordScore, EvaluationError> {
     let clean = simulate(scenario)?;
-    let residuals = whitened_residuals(&clean, &ModelExtension::default())?;
+    let residuals = whitened_residuals(&clean)?;
     for attempt in 0..MAX_DRAWS {
         let kinds = UnlistedKind::ALL;
         let kind = kinds[(number as usize + attempt) % kinds.len()];
@@ -56,7 +57,7 @@ pub(crate) fn score_out_of_catalogue(
         if !scale(scenario, &residuals, &mut effect, strength)? {
             continue;
         }
-        if let Some(score) = diagnosed(scenario, &clean, &residuals, effect, strength)? {
+        if let Some(score) = diagnosed(scenario, clean.clone(), effect, strength)? {
             return Ok(score);
         }
     }
@@ -66,51 +67,42 @@ pub(crate) fn score_out_of_catalogue(
     })
 }
 
-/// Diagnoses the record with the effect, and corrects the size until the strength given the findings
-/// is the requested one. `None` if the findings absorb the effect, or if they cannot be fitted to the
+/// Diagnoses the record with the effect, and corrects the size until the strength beside what is named is
+/// the requested one. `None` if the findings absorb the effect, or if they cannot be fitted to the
 /// record without it.
 fn diagnosed(
     scenario: &Scenario,
-    clean: &Simulation,
-    nominal_residuals: &[[f64; 3]],
-    mut effect: UnlistedEffect,
+    clean: Simulation,
+    effect: UnlistedEffect,
     strength: f64,
 ) -> Result<Option<RecordScore>, EvaluationError> {
+    let with = effect.simulate(scenario)?;
+    let mut record = UnlistedRecord {
+        clean,
+        with,
+        effect,
+    };
     let mut corrections = 0;
     loop {
-        let simulation = effect.simulate(scenario)?;
-        let found = diagnose(
-            &simulation.record,
-            &simulation.bench,
-            &DiagnoseOptions::default(),
-        )?;
-        let named = found
-            .extended
-            .as_ref()
-            .map_or_else(ModelExtension::default, |extended| {
-                named_effects(extended.extension())
-            });
-        let without = if named == ModelExtension::default() {
-            Ok(nominal_residuals.to_vec())
-        } else {
-            whitened_residuals(clean, &named)
-        };
-        let (Ok(without), Ok(with)) = (without, whitened_residuals(&simulation, &named)) else {
+        let (data, bench) = (&record.with.record, &record.with.bench);
+        let found = diagnose(data, bench, &DiagnoseOptions::default())?;
+        let Some(reached) = record.strength_beside(&found) else {
             return Ok(None);
         };
-        let reached = distance(&without, &with);
         if reached < LEAST_STRENGTH {
             return Ok(None);
         }
         let factor = strength / reached;
-        corrections += 1;
-        if (factor - 1.0).abs() < NEAR || corrections > CORRECTIONS {
+        if (factor - 1.0).abs() < NEAR || corrections == CORRECTIONS {
             return Ok(Some(RecordScore {
-                hidden: vec![injected_score(&effect, reached)],
+                hidden: vec![injected_score(&record.effect, reached)],
                 ..findings_score(&found.result)
             }));
         }
+        let effect = &mut record.effect;
         effect.size = (effect.size * factor.min(LARGEST_CORRECTION)).min(effect.largest_size);
+        record.with = record.effect.simulate(scenario)?;
+        corrections += 1;
     }
 }
 
@@ -156,7 +148,7 @@ impl UnlistedRecord {
         strength: f64,
     ) -> Result<Option<Self>, EvaluationError> {
         let clean = simulate(scenario)?;
-        let residuals = whitened_residuals(&clean, &ModelExtension::default())?;
+        let residuals = whitened_residuals(&clean)?;
         if !scale(scenario, &residuals, &mut effect, strength)? {
             return Ok(None);
         }
@@ -204,7 +196,7 @@ fn scale(
         let Ok(simulation) = effect.simulate(scenario) else {
             return Ok(false);
         };
-        let Ok(with) = whitened_residuals(&simulation, &ModelExtension::default()) else {
+        let Ok(with) = whitened_residuals(&simulation) else {
             return Ok(false);
         };
         let factor = strength / distance(without, &with);
@@ -222,16 +214,9 @@ fn scale(
     Ok(false)
 }
 
-/// Whitened residuals of a model that is fitted to a record.
-fn whitened_residuals(
-    simulation: &Simulation,
-    extension: &ModelExtension,
-) -> Result<Vec<[f64; 3]>, EvaluationError> {
-    let nominal = nominal_fit(simulation)?;
-    if *extension == ModelExtension::default() {
-        return Ok(nominal.whitened()?);
-    }
-    Ok(nominal.refitted(extension)?.whitened()?)
+/// Whitened residuals of the nominal model that is fitted to a record.
+fn whitened_residuals(simulation: &Simulation) -> Result<Vec<[f64; 3]>, EvaluationError> {
+    Ok(nominal_fit(simulation)?.whitened()?)
 }
 
 /// Length of the difference between the whitened residuals of one model fitted to two records with
@@ -295,7 +280,7 @@ mod tests {
             ..scenario(3)
         };
         let clean = simulate(&scenario).unwrap();
-        let without = whitened_residuals(&clean, &ModelExtension::default()).unwrap();
+        let without = whitened_residuals(&clean).unwrap();
         let mut scaled = 0;
         for (number, kind) in UnlistedKind::ALL.into_iter().enumerate() {
             let random = &mut Draw::new(number as u64, 0);
@@ -303,7 +288,7 @@ mod tests {
             if scale(&scenario, &without, &mut effect, 10.0).unwrap() {
                 scaled += 1;
                 let other = effect.simulate(&scenario).unwrap();
-                let with = whitened_residuals(&other, &ModelExtension::default()).unwrap();
+                let with = whitened_residuals(&other).unwrap();
                 let strength = distance(&without, &with);
                 assert!(
                     (10.0 / REACHED..10.0 * REACHED).contains(&strength),
