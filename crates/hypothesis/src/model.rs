@@ -127,6 +127,16 @@ pub trait FittedModel: Clone {
         absent: &[usize],
     ) -> Result<RateNoiseFit, Self::Error>;
 
+    /// The noise of the rates with all unknowns of the fit integrated out, for what depends on the noise and not
+    /// on its likelihood: each unknown that is not takes a degree of freedom off it. That of the fit, where
+    /// the model does not estimate it.
+    ///
+    /// # Errors
+    /// Those of a pass over the record.
+    fn unbiased_rate_noise(&self) -> Result<RateNoise, Self::Error> {
+        Ok(self.rate_noise())
+    }
+
     /// 95 % interval of each random walk of the rates that the fit has, by its profile likelihood.
     ///
     /// # Errors

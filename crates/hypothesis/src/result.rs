@@ -277,11 +277,16 @@ pub(crate) fn add_shape_intervals<F: FittedModel>(
     if ShapeScale::of(hypothesis, &context.rows).is_none() {
         return Ok(());
     }
-    // Those of the first size: the noise that hides it hides the shape. Where no pass succeeds, nothing is
-    // known of the noise but its value.
-    let degrees = fitted.degrees_of_freedom().unwrap_or_default();
-    let degrees = absent.first().and_then(|place| degrees.get(*place));
-    let of = (hypothesis, shape, degrees.copied().unwrap_or(f64::INFINITY));
+    let size = absent.first().map(|place| fitted.values()[*place]);
+    let own = size.and_then(|size| change_by_shape(context, &accepted[index], size));
+    // Where no such fit succeeds, nothing is known of the noise but its value.
+    let unbiased = own.and_then(|own| with_unbiased_noise(fitted, &free, own));
+    let (fitted, degrees) = unbiased
+        .as_ref()
+        .map_or((fitted, f64::INFINITY), |(fitted, degrees)| {
+            (fitted, *degrees)
+        });
+    let of = (hypothesis, shape, degrees);
     let found = shape_interval(fitted, context, of, (absent, &free), draws)?;
     let Some(found) = found else { return Ok(()) };
     let mut sigmas = found.size_sigmas.into_iter();
@@ -297,7 +302,24 @@ pub(crate) fn add_shape_intervals<F: FittedModel>(
     Ok(())
 }
 
-/// Derivative of the effect of another accepted hypothesis by its shape, over a hundredth of its scale.
+/// A fit with the noise that is left where all shapes are unknown, and the degrees of freedom of the variance
+/// of one: those of the amplitude of the derivative `own` by it, in a fit that has it beside the `free` columns.
+/// `None` if the model estimates no noise, or if that fit fails.
+fn with_unbiased_noise<F: FittedModel>(
+    fitted: &F,
+    free: &[Column],
+    own: Column,
+) -> Option<(F, f64)> {
+    let mut extension = fitted.extension().clone();
+    let further = free.iter().cloned().chain([own]);
+    extension.columns.extend(further, f64::INFINITY);
+    let with = fitted.refitted(&extension).ok()?;
+    let degrees = *with.degrees_of_freedom().ok()?.last()?;
+    let noise = with.unbiased_rate_noise().ok()?;
+    Some((fitted.with_rate_noise(&noise).ok()?, degrees))
+}
+
+/// Derivative of the effect of an accepted hypothesis by its shape, over a hundredth of its scale.
 fn change_by_shape(context: &SearchContext<'_>, accepted: &Accepted, size: f64) -> Option<Column> {
     let hypothesis = &context.set.hypotheses[accepted.hypothesis];
     let scale = ShapeScale::of(hypothesis, &context.rows)?;

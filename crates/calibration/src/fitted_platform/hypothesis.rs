@@ -73,6 +73,10 @@ impl FittedModel for FittedPlatform<'_> {
         FittedPlatform::fit_rate_noise(self, walking, absent)
     }
 
+    fn unbiased_rate_noise(&self) -> Result<RateNoise, CalibrationError> {
+        FittedPlatform::unbiased_rate_noise(self)
+    }
+
     fn with_rate_noise(&self, noise: &RateNoise) -> Result<Self, CalibrationError> {
         FittedPlatform::with_rate_noise(self, noise)
     }

@@ -30,6 +30,10 @@ const LONGEST_INTERVAL: f64 = 12.0;
 /// sigmas, that of three degrees, where the first order has one degree and 12.7 sigmas.
 const FEWEST_DEGREES: f64 = 3.0;
 
+/// Gain of the log-likelihood that a step expects below which it is not made where the noise shall be unbiased:
+/// a logarithm is then good to two hundredths of its standard deviation, a tenth of what is corrected.
+const UNBIASED_GAIN: f64 = 2e-4;
+
 /// Most evaluations for one end of an interval, and the error of an end that is good enough, in
 /// standard deviations.
 const MAX_EVALUATIONS: usize = 6;
@@ -100,6 +104,19 @@ impl FittedPlatform<'_> {
     /// As [`Self::fit_rate_noise`].
     pub fn fit_rate_noise_to_first(&self, rows: usize) -> Result<RateNoiseFit, CalibrationError> {
         self.fit_rate_noise_with(&self.rate_noise().walking(), &[], &[], rows)
+    }
+
+    /// The noise of this fit with the effects of its extension integrated out as its coefficients are: each
+    /// unknown of an effect takes a degree of freedom off the noise that hides it, of some twenty. Models with
+    /// other effects are compared without, as their flat priors have no common unit.
+    ///
+    /// # Errors
+    /// As [`Self::fit_rate_noise`].
+    pub fn unbiased_rate_noise(&self) -> Result<RateNoise, CalibrationError> {
+        let (mut likelihood, _) = self.likelihood(&self.rate_noise().walking(), &[], &[]);
+        likelihood.integrates_effects = true;
+        let (logarithms, at) = likelihood.maximise_to(UNBIASED_GAIN)?;
+        Ok(likelihood.result(&logarithms, &at)?.noise)
     }
 
     fn fit_rate_noise_with(
@@ -225,6 +242,7 @@ impl FittedPlatform<'_> {
             absent,
             held,
             rows: self.points().len(),
+            integrates_effects: false,
         };
         (likelihood, unit)
     }

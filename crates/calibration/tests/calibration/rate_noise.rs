@@ -1,8 +1,8 @@
 //! White noise and random walks of the gyros, estimated from simulated records.
 #![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
 
-use gyrocal_calibration::{FittedPlatform, NoiseModel, Options, Run};
-use gyrocal_hypothesis::ModelExtension;
+use gyrocal_calibration::{FittedPlatform, NoiseModel, Options, PLATFORM, Run};
+use gyrocal_hypothesis::{Column, ExtraColumns, ModelExtension};
 use gyrocal_truth::{Coefficients, Hidden, InitialAttitude, Scenario, Simulation, simulate};
 
 /// Two days with a random walk on gyro x, white noise of gyro y twice the declared one, and no other
@@ -198,4 +198,51 @@ fn degrees_of_freedom_are_those_of_refitted_covariances() {
         .degrees_of_freedom()
         .unwrap();
     assert!(degrees.iter().all(|degrees| *degrees >= 3.0), "{degrees:?}");
+}
+
+#[test]
+fn unknowns_of_effects_take_nothing_off_the_unbiased_noise() {
+    /// Sections of the record, and the records.
+    const SECTIONS: usize = 8;
+    const RECORDS: u64 = 20;
+    let mut logarithms = [0.0; 2];
+    for seed in 0..RECORDS {
+        let simulation = simulate(&Scenario {
+            seed,
+            duration_s: 2.0 * 86_400.0,
+            interval_s: 120.0,
+            initial: InitialAttitude::Random,
+            ..Scenario::default()
+        })
+        .unwrap();
+        let run = Run {
+            record: &simulation.record,
+            bench: &simulation.bench,
+        };
+        let nominal =
+            FittedPlatform::nominal(&run, &Options::default(), &NoiseModel::default()).unwrap();
+        // A bias of gyro x of its own in each section but the last.
+        let steps = simulation.record.time_s.len() - 1;
+        let section = |index: usize| Column::TimeProfile {
+            parameter: PLATFORM.rates[0].constant,
+            steps: (0..steps)
+                .map(|step| f64::from(u8::from(step * SECTIONS / steps == index)))
+                .collect(),
+        };
+        let extension = ModelExtension {
+            columns: ExtraColumns::new((1..SECTIONS).map(section).collect()),
+            ..ModelExtension::default()
+        };
+        let extended = nominal.refitted(&extension).unwrap();
+        let noise = extended.fit_rate_noise(&[], &[]).unwrap().noise;
+        let fitted = extended.with_rate_noise(&noise).unwrap();
+        let unbiased = fitted.unbiased_rate_noise().unwrap();
+        logarithms[0] += noise.white[0].ln() / RECORDS as f64;
+        logarithms[1] += unbiased.white[0].ln() / RECORDS as f64;
+    }
+    // Some twenty degrees of freedom, of which seven biases take a third: half of ln(13/20) is -0.22. The
+    // logarithm of an unbiased variance of thirteen is low by 0.04, with a standard deviation of 0.2/√20.
+    let [with_biases, unbiased] = logarithms;
+    assert!(with_biases < -0.2, "{with_biases}");
+    assert!((unbiased + 0.04).abs() < 3.0 * 0.045, "{unbiased}");
 }

@@ -1,12 +1,14 @@
 //! The restricted likelihood of the gyros' noise and its maximum.
 
+mod eliminated;
+
+use eliminated::Eliminated;
 use gyrocal::estimation::batch::{Linearisation, NoiseScore, Walk, Walks};
 use gyrocal_hypothesis::RateNoiseFit;
-use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use nalgebra::{Cholesky, DMatrix, DVector};
 
 use super::steps::{bounded, moved, scale};
 use super::{GYRO_NOISE_PRIOR_SIGMA, NO_WALK};
-use crate::coefficients::PARAMETERS;
 use crate::error::CalibrationError;
 use crate::fitted_platform::several::add_score;
 use crate::fitted_platform::{AXES, FittedPlatform, S_PER_H};
@@ -47,17 +49,6 @@ pub(super) struct At {
     left: DMatrix<f64>,
 }
 
-/// The unknowns of the fit at one noise.
-struct Eliminated {
-    value: f64,
-    solution: DVector<f64>,
-    /// The unknowns that the model has, and the factor of their information.
-    present: Vec<usize>,
-    cholesky: Cholesky<f64, Dyn>,
-    /// The inverse information of those that are integrated out.
-    inverse: DMatrix<f64>,
-}
-
 /// The unknown logarithms of variances: the white noise of each gyro over the fit's, then densities
 /// of walks.
 pub(super) struct Likelihood<'p, 'a> {
@@ -72,6 +63,8 @@ pub(super) struct Likelihood<'p, 'a> {
     pub(super) held: &'p [usize],
     /// Number of rows that tell of the noise, from the first.
     pub(super) rows: usize,
+    /// Whether effects are integrated out as well, see [`FittedPlatform::unbiased_rate_noise`].
+    pub(super) integrates_effects: bool,
 }
 
 impl Likelihood<'_, '_> {
@@ -107,6 +100,14 @@ impl Likelihood<'_, '_> {
 
     /// Fisher's scoring from the noise of the fit.
     pub(super) fn maximise(&self) -> Result<(DVector<f64>, At), CalibrationError> {
+        self.maximise_to(LEAST_GAIN)
+    }
+
+    /// The same until a step expects less than a gain.
+    pub(super) fn maximise_to(
+        &self,
+        least_gain: f64,
+    ) -> Result<(DVector<f64>, At), CalibrationError> {
         let mut logarithms = DVector::zeros(AXES + self.free.len());
         for axis in self.held {
             logarithms[*axis] = -2.0 * self.fitted.noise.gyro_ratio[*axis].ln();
@@ -120,7 +121,7 @@ impl Likelihood<'_, '_> {
                 break;
             };
             let mut step = bounded(cholesky.solve(&gradient), &logarithms);
-            if 0.5 * step.dot(&gradient) < LEAST_GAIN {
+            if 0.5 * step.dot(&gradient) < least_gain {
                 break;
             }
             let mut halvings = 0;
@@ -298,24 +299,6 @@ impl Likelihood<'_, '_> {
         })
     }
 
-    /// The information that the unknowns of the fit leave.
-    fn left(&self, score: &NoiseScore, eliminated: &Eliminated) -> DMatrix<f64> {
-        let unknowns = self.unknowns();
-        let stride = self.fitted.problem.unknowns.len() + 1;
-        let present = &eliminated.present;
-        let mut along = DMatrix::from_fn(present.len(), unknowns.len(), |i, index| {
-            score.with_rows[unknowns[index] * stride + present[i] + 1]
-        });
-        for axis in self.held {
-            along.column_mut(*axis).fill(0.0);
-        }
-        eliminated
-            .cholesky
-            .l_dirty()
-            .solve_lower_triangular_mut(&mut along);
-        self.information(score) - along.tr_mul(&along)
-    }
-
     /// Places of the unknowns in a score, after the noise of the outputs: inputs, walks.
     fn unknowns(&self) -> Vec<usize> {
         (AXES..2 * AXES)
@@ -359,87 +342,11 @@ impl Likelihood<'_, '_> {
         Ok((self.information(&score), derivatives))
     }
 
-    /// Places of the unknowns that are integrated out: coefficients, what the bench declares uncertain, and
-    /// the offsets of each turn-on.
-    fn integrated(&self) -> Vec<usize> {
-        let fitted = self.fitted;
-        let first = PARAMETERS + fitted.nuisances();
-        (0..first)
-            .chain(fitted.shared..fitted.problem.unknowns.len())
-            .collect()
-    }
-
     /// Gram matrix of the unknowns of the fit from that of the columns of a pass.
     fn gram(&self, of_columns: &DMatrix<f64>, columns: &[&[usize]]) -> DMatrix<f64> {
         let count = self.fitted.problem.unknowns.len();
         let mut gram = DMatrix::zeros(count + 1, count + 1);
         add_gram(&mut gram, of_columns, columns);
         gram
-    }
-
-    /// The logarithm of the restricted likelihood with the prior, and the unknowns of the fit there.
-    fn restricted(
-        &self,
-        score: &NoiseScore,
-        logarithms: &[f64],
-    ) -> Result<Eliminated, CalibrationError> {
-        let problem = &self.fitted.problem;
-        let gram = &score.gram;
-        let count = problem.unknowns.len();
-        let integrated = self.integrated();
-        let mut solution = DVector::zeros(count + 1);
-        solution[0] = 1.0;
-        let weight = |place: usize| problem.unknowns[place].sigma.powi(-2);
-        // The rows may end before the onset of an effect.
-        let is_told = |place: usize| gram[(place + 1, place + 1)] + weight(place) > 0.0;
-        let present: Vec<usize> = (0..count)
-            .filter(|at| !self.absent.contains(at) && (integrated.contains(at) || is_told(*at)))
-            .collect();
-        for place in self.absent {
-            solution[place + 1] = -problem.values[*place];
-        }
-        let pull = gram * &solution;
-        let gradient = DVector::from_fn(present.len(), |i, _| {
-            let place = present[i];
-            -pull[place + 1] - weight(place) * problem.values[place]
-        });
-        let mut inner = DMatrix::from_fn(present.len(), present.len(), |i, j| {
-            gram[(present[i] + 1, present[j] + 1)]
-        });
-        for (i, place) in present.iter().enumerate() {
-            inner[(i, i)] += weight(*place);
-        }
-        let places: Vec<usize> = (0..present.len())
-            .filter(|at| integrated.contains(&present[*at]))
-            .collect();
-        let own = inner.select_rows(&places).select_columns(&places);
-        let not_definite = || CalibrationError::NotPositiveDefinite;
-        let cholesky = Cholesky::new(inner).ok_or_else(not_definite)?;
-        let change = cholesky.solve(&gradient);
-        for (place, change) in present.iter().zip(change.iter()) {
-            solution[place + 1] = *change;
-        }
-        let own = Cholesky::new(own).ok_or_else(not_definite)?;
-        let determinant = 2.0 * own.l().diagonal().iter().map(|x| x.ln()).sum::<f64>();
-        let prior: f64 = present
-            .iter()
-            .map(|place| weight(*place) * (problem.values[*place] + solution[place + 1]).powi(2))
-            .sum();
-        let squares = (gram * &solution).dot(&solution);
-        let believed = self.fitted.noise.gyro_ratio;
-        let of_noise: f64 = (0..AXES)
-            .map(|axis| {
-                let off = 0.5 * logarithms[axis] + believed[axis].ln();
-                (off / GYRO_NOISE_PRIOR_SIGMA).powi(2)
-            })
-            .sum();
-        let value = -0.5 * (score.log_variance + determinant + squares + prior + of_noise);
-        Ok(Eliminated {
-            value,
-            solution,
-            present,
-            cholesky,
-            inverse: own.inverse(),
-        })
     }
 }
