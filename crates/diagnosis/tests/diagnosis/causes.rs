@@ -343,6 +343,9 @@ fn the_time_constant_of_a_large_warm_up_is_that_of_the_noise_it_leaves() {
         let half = 0.5 * (high - low);
         let off = (shape.estimate - TIME_CONSTANT_H).abs();
         assert!(off < 2.0 * half, "{seed}: {shape:?}");
+        // Noise of some fifty degrees of freedom: Student's deviates of 200 and of 10 are 1.972 and 2.228.
+        let deviate = half / shape.sigma.unwrap();
+        assert!((1.972..2.228).contains(&deviate), "{seed}: {deviate}");
     }
 }
 
