@@ -231,6 +231,8 @@ fn single(figures: &mut CellFigures, records: &[&RecordScore], strong: Option<([
         record.detected().then_some(record.findings.len() > 1)
     });
     figures.note("a spurious second", more);
+    let another = share(records, |record| Some(record.tells_of_another()));
+    figures.note("told of another cause", another);
 }
 
 fn set_size(figures: &mut CellFigures, records: &[&RecordScore]) {
@@ -301,7 +303,7 @@ fn out_of_catalogue(figures: &mut CellFigures, records: &[&RecordScore]) {
         0.98,
         told,
     );
-    // What an effect leaves beside the names below that cannot be told from noise.
+    // Records where the names took up most of the effect are in the note alone.
     let named = |record: &RecordScore| record.detected() && !record.tells_of_another();
     let masked = share(records, |record| reached(record).then(|| named(record)));
     figures.at_most("a false name, and not told", 0.05, masked);

@@ -1,9 +1,9 @@
 //! Effects that are not in the catalogue, scaled to a strength given the findings of the diagnosis.
 //!
 //! Such an effect has no signature in the linearised model. Its strength is the length of the change
-//! in the whitened residuals: the fitted model, with the effects and the noise that the diagnosis named in it,
-//! is fitted to the record with and without the effect. Beside a random walk that takes the effect up little of
-//! it is left, as no record tells a slow function of time from a walk.
+//! in the whitened residuals: the fitted model, with the effects that the diagnosis named and the noise that it
+//! believes, is fitted to the record with and without the effect. Beside a random walk that takes the effect up
+//! little of it is left, as no record tells a slow function of time from a walk.
 
 use gyrocal_calibration::{FittedPlatform, Options, Run};
 use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, diagnose};
@@ -32,10 +32,6 @@ const MAX_DRAWS: usize = 8;
 /// The strength given the nominal model must be within this factor of the requested one: effects that
 /// switch are not proportional to their size.
 const REACHED: f64 = 1.2;
-
-/// An effect with less strength than this given the findings, in sigmas, is equivalent to them, as a
-/// sign that never switches is to a bias.
-const LEAST_STRENGTH: f64 = 0.5;
 
 /// Injects an effect that is not in the catalogue, diagnoses the record and returns its score.
 ///
@@ -68,8 +64,8 @@ pub(crate) fn score_out_of_catalogue(
 }
 
 /// Diagnoses the record with the effect, and corrects the size until the strength beside what is named is
-/// the requested one. `None` if the findings absorb the effect, or if they cannot be fitted to the
-/// record without it.
+/// the requested one, or as near as some corrections come: names may leave nothing of it. `None` if they cannot
+/// be fitted to the record without it.
 fn diagnosed(
     scenario: &Scenario,
     clean: Simulation,
@@ -89,9 +85,6 @@ fn diagnosed(
         let Some(reached) = record.strength_beside(&found) else {
             return Ok(None);
         };
-        if reached < LEAST_STRENGTH {
-            return Ok(None);
-        }
         let factor = strength / reached;
         if (factor - 1.0).abs() < NEAR || corrections == CORRECTIONS {
             return Ok(Some(RecordScore {

@@ -113,7 +113,7 @@ impl RecordScore {
     }
 
     /// `true` if the diagnosis says that its findings are not the whole answer: the remainder is unexplained,
-    /// or a cause outside of the catalogue is likelier than the likeliest name.
+    /// or a cause outside of the catalogue is likelier than all that could be in the place of each finding.
     #[must_use]
     pub fn tells_of_another(&self) -> bool {
         let stated = self.findings.iter().filter_map(|one| one.none_of_these);

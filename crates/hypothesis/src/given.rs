@@ -11,9 +11,10 @@ use crate::hypothesis::{Hypothesis, Selection};
 use crate::jump::best_jump;
 use crate::model::FittedModel;
 use crate::null_distribution::GaussianDraws;
-use crate::result::{add_shape_intervals, parameters_of};
+use crate::result::parameters_of;
 use crate::rows::Rows;
 use crate::shape::About;
+use crate::shape_estimates::ShapeEstimates;
 use crate::state::{settled, settled_with_shapes, stage};
 
 /// A model with given effects, fitted with the noise that it leaves.
@@ -65,6 +66,7 @@ pub fn fit_with<F: FittedModel>(
         let fitted = own.fitted.with_rate_noise(&noise)?;
         own = settled_with_shapes(&context, (fitted, About::Estimate), &mut accepted, &[])?;
     }
+    let shapes = ShapeEstimates::new(&own, &context, &accepted);
     let mut draws = GaussianDraws::new(options.seed);
     let mut effects = Vec::with_capacity(selection.effects.len());
     for effect in &selection.effects {
@@ -72,7 +74,7 @@ pub fn fit_with<F: FittedModel>(
         let estimates = match place.filter(|_| effect.kind != EffectKind::RandomWalk) {
             Some(index) => {
                 let mut estimates = parameters_of(&own, &context.set, &accepted, index);
-                add_shape_intervals(&own, &context, &accepted, index, &mut estimates, &mut draws)?;
+                shapes.add_to(&mut estimates, index, &mut draws)?;
                 estimates
             }
             None => walk_estimates(&own, effect)?,

@@ -93,8 +93,8 @@
 //!
 //! with c the 95 % quantile of max l − l(true s), drawn from the joint normal distribution of the
 //! scores at all shapes with the estimated effect in the data: 3.84 where l is quadratic, more where
-//! an onset is a change point. Noise that was estimated is here that of [`FittedModel::unbiased_rate_noise`],
-//! of as many degrees of freedom as the variance of the shape has.
+//! an onset is a change point. Noise that a model estimates is here that of
+//! [`FittedModel::restricted_noise`]; c then has the degrees of freedom of the variance of the shape.
 //!
 //! # What it does not do
 //!
@@ -134,6 +134,7 @@ mod score_table;
 mod screen;
 mod search;
 mod shape;
+mod shape_estimates;
 mod shape_interval;
 mod signature;
 mod smooth_functions;

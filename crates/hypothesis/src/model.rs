@@ -127,14 +127,15 @@ pub trait FittedModel: Clone {
         absent: &[usize],
     ) -> Result<RateNoiseFit, Self::Error>;
 
-    /// The noise of the rates with all unknowns of the fit integrated out, for what depends on the noise and not
-    /// on its likelihood: each unknown that is not takes a degree of freedom off it. That of the fit, where
-    /// the model does not estimate it.
+    /// Noise of the rates at the largest likelihood of which all unknowns of the fit are integrated out, effects
+    /// too. Each unknown that is not takes a degree of freedom off the noise, of some twenty. Models with other
+    /// effects cannot be compared by that likelihood: it serves intervals. `None` of a model that does not
+    /// estimate its noise so.
     ///
     /// # Errors
     /// Those of a pass over the record.
-    fn unbiased_rate_noise(&self) -> Result<RateNoise, Self::Error> {
-        Ok(self.rate_noise())
+    fn restricted_noise(&self) -> Result<Option<RateNoise>, Self::Error> {
+        Ok(None)
     }
 
     /// 95 % interval of each random walk of the rates that the fit has, by its profile likelihood.

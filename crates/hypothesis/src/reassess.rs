@@ -8,8 +8,9 @@ use crate::merged::merge;
 use crate::model::FittedModel;
 use crate::null_distribution::GaussianDraws;
 use crate::replaced::{Replaced, replaceable};
-use crate::result::{ConditionalResult, add_shape_intervals, evaluate};
+use crate::result::{ConditionalResult, evaluate};
 use crate::score::Best;
+use crate::shape_estimates::ShapeEstimates;
 use crate::state::{SearchState, stage};
 use crate::walk_candidates::{BESIDE_WALKS, Rival};
 
@@ -128,16 +129,10 @@ fn complete<F: FittedModel>(
     results: &mut [ConditionalResult],
     draws: &mut GaussianDraws,
 ) -> Result<(), F::Error> {
+    let shapes = ShapeEstimates::new(&state.stage, context, &state.accepted);
     for (index, result) in results.iter_mut().enumerate() {
         let finding = &mut result.finding;
-        add_shape_intervals(
-            &state.stage,
-            context,
-            &state.accepted,
-            index,
-            &mut finding.parameters,
-            draws,
-        )?;
+        shapes.add_to(&mut finding.parameters, index, draws)?;
         let hypothesis = state.accepted[index].hypothesis;
         for other in replaced.iter().filter(|other| other.by == hypothesis) {
             other.add_to(&mut finding.alternatives);

@@ -6,7 +6,6 @@ use nalgebra::DMatrix;
 use crate::accepted::Accepted;
 use crate::bank::{NominalEstimate, ScoreBank};
 use crate::by_fits::{Compared, fit_rivals};
-use crate::column::Column;
 use crate::context::SearchContext;
 use crate::finding::{
     Alternative, CONFIDENCE_SET_DEVIANCE, EffectEstimate, ExactEquivalent, Finding,
@@ -17,9 +16,6 @@ use crate::model::FittedModel;
 use crate::null_distribution::{GaussianDraws, NullDistribution};
 use crate::reach::{keep_likely, reaches};
 use crate::score::{Best, NESTED_MODEL_CHI2, Scores};
-use crate::shape::ShapeScale;
-use crate::shape_interval::shape_interval;
-use crate::signature::shape_derivative;
 
 /// Twice the log-likelihood by which two effects may differ and count as equally likely: another name is
 /// not worth a fit.
@@ -245,94 +241,6 @@ fn exact_equivalents<F: FittedModel>(
             })
         })
         .collect()
-}
-
-/// Adds the interval of its shape to the estimates of an effect, and the standard deviations of its sizes
-/// with the shape unknown.
-pub(crate) fn add_shape_intervals<F: FittedModel>(
-    stage: &FittedStage<F>,
-    context: &SearchContext<'_>,
-    accepted: &[Accepted],
-    index: usize,
-    estimates: &mut [EffectEstimate],
-    draws: &mut GaussianDraws,
-) -> Result<(), F::Error> {
-    let hypothesis = &context.set.hypotheses[accepted[index].hypothesis];
-    let Some(shape) = accepted[index].shape else {
-        return Ok(());
-    };
-    let others = accepted
-        .iter()
-        .enumerate()
-        .filter(|(other, _)| *other != index);
-    let free: Vec<Column> = others
-        .filter_map(|(other, accepted)| {
-            let place = stage.places[other].values.first()?;
-            let size = stage.fitted.values()[*place];
-            change_by_shape(context, accepted, size)
-        })
-        .collect();
-    let absent = &stage.places[index].values;
-    let fitted = &stage.fitted;
-    if ShapeScale::of(hypothesis, &context.rows).is_none() {
-        return Ok(());
-    }
-    let size = absent.first().map(|place| fitted.values()[*place]);
-    let own = size.and_then(|size| change_by_shape(context, &accepted[index], size));
-    // Where no such fit succeeds, nothing is known of the noise but its value.
-    let unbiased = own.and_then(|own| with_unbiased_noise(fitted, &free, own));
-    let (fitted, degrees) = unbiased
-        .as_ref()
-        .map_or((fitted, f64::INFINITY), |(fitted, degrees)| {
-            (fitted, *degrees)
-        });
-    let of = (hypothesis, shape, degrees);
-    let found = shape_interval(fitted, context, of, (absent, &free), draws)?;
-    let Some(found) = found else { return Ok(()) };
-    let mut sigmas = found.size_sigmas.into_iter();
-    let described = estimates.iter_mut().zip(hypothesis.effect.parameters);
-    for (estimate, parameter) in described {
-        if parameter.role.is_shape() {
-            estimate.sigma = found.sigma;
-            estimate.interval = Some(found.pieces.clone());
-        } else if let Some(sigma) = sigmas.next() {
-            estimate.sigma = Some(sigma / parameter.scale);
-        }
-    }
-    Ok(())
-}
-
-/// A fit with the noise that is left where all shapes are unknown, and the degrees of freedom of the variance
-/// of one: those of the amplitude of the derivative `own` by it, in a fit that has it beside the `free` columns.
-/// `None` if the model estimates no noise, or if that fit fails.
-fn with_unbiased_noise<F: FittedModel>(
-    fitted: &F,
-    free: &[Column],
-    own: Column,
-) -> Option<(F, f64)> {
-    let mut extension = fitted.extension().clone();
-    let further = free.iter().cloned().chain([own]);
-    extension.columns.extend(further, f64::INFINITY);
-    let with = fitted.refitted(&extension).ok()?;
-    let degrees = *with.degrees_of_freedom().ok()?.last()?;
-    let noise = with.unbiased_rate_noise().ok()?;
-    Some((fitted.with_rate_noise(&noise).ok()?, degrees))
-}
-
-/// Derivative of the effect of an accepted hypothesis by its shape, over a hundredth of its scale.
-fn change_by_shape(context: &SearchContext<'_>, accepted: &Accepted, size: f64) -> Option<Column> {
-    let hypothesis = &context.set.hypotheses[accepted.hypothesis];
-    let scale = ShapeScale::of(hypothesis, &context.rows)?;
-    let place = scale.place(accepted.shape?);
-    let width = 0.005 * (scale.ends[1] - scale.ends[0]);
-    let between = [scale.shape(place - width), scale.shape(place + width)];
-    shape_derivative(
-        context.plant,
-        hypothesis.effect,
-        size,
-        between,
-        &context.rows,
-    )
 }
 
 /// Estimates of the parameters of an accepted effect. Of a wrong first attitude of one of several records the

@@ -73,8 +73,8 @@ impl FittedModel for FittedPlatform<'_> {
         FittedPlatform::fit_rate_noise(self, walking, absent)
     }
 
-    fn unbiased_rate_noise(&self) -> Result<RateNoise, CalibrationError> {
-        FittedPlatform::unbiased_rate_noise(self)
+    fn restricted_noise(&self) -> Result<Option<RateNoise>, CalibrationError> {
+        FittedPlatform::restricted_noise(self).map(Some)
     }
 
     fn with_rate_noise(&self, noise: &RateNoise) -> Result<Self, CalibrationError> {

@@ -30,9 +30,9 @@ const LONGEST_INTERVAL: f64 = 12.0;
 /// sigmas, that of three degrees, where the first order has one degree and 12.7 sigmas.
 const FEWEST_DEGREES: f64 = 3.0;
 
-/// Gain of the log-likelihood that a step expects below which it is not made where the noise shall be unbiased:
-/// a logarithm is then good to two hundredths of its standard deviation, a tenth of what is corrected.
-const UNBIASED_GAIN: f64 = 2e-4;
+/// Gain of the log-likelihood that a step expects below which it is not made where effects are integrated out: a
+/// logarithm is then good to two hundredths of its standard deviation, a tenth of what that corrects.
+const RESTRICTED_GAIN: f64 = 2e-4;
 
 /// Most evaluations for one end of an interval, and the error of an end that is good enough, in
 /// standard deviations.
@@ -112,10 +112,10 @@ impl FittedPlatform<'_> {
     ///
     /// # Errors
     /// As [`Self::fit_rate_noise`].
-    pub fn unbiased_rate_noise(&self) -> Result<RateNoise, CalibrationError> {
+    pub fn restricted_noise(&self) -> Result<RateNoise, CalibrationError> {
         let (mut likelihood, _) = self.likelihood(&self.rate_noise().walking(), &[], &[]);
         likelihood.integrates_effects = true;
-        let (logarithms, at) = likelihood.maximise_to(UNBIASED_GAIN)?;
+        let (logarithms, at) = likelihood.maximise_to(RESTRICTED_GAIN)?;
         Ok(likelihood.result(&logarithms, &at)?.noise)
     }
 
@@ -176,7 +176,8 @@ impl FittedPlatform<'_> {
 
     /// Degrees of freedom of the variance of each estimate: the noise of the gyros that it rests on was
     /// estimated from the record (Satterthwaite, Biometrics Bulletin 2, 110, 1946). An error over its
-    /// sigma has nearly Student's distribution with as many. Three at least.
+    /// sigma has nearly Student's distribution with as many. Three at least. The information on that noise is
+    /// what it would be with the unknowns of the fit known: degrees are rather too many.
     ///
     /// # Errors
     /// As [`Self::fit_rate_noise`].

@@ -63,7 +63,7 @@ pub(super) struct Likelihood<'p, 'a> {
     pub(super) held: &'p [usize],
     /// Number of rows that tell of the noise, from the first.
     pub(super) rows: usize,
-    /// Whether effects are integrated out as well, see [`FittedPlatform::unbiased_rate_noise`].
+    /// Whether effects are integrated out as well, see [`FittedPlatform::restricted_noise`].
     pub(super) integrates_effects: bool,
 }
 

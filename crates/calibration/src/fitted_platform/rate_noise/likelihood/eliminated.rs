@@ -31,6 +31,7 @@ impl Likelihood<'_, '_> {
         };
         (0..first)
             .chain(fitted.shared..fitted.problem.unknowns.len())
+            .filter(|place| !self.absent.contains(place))
             .collect()
     }
 
