@@ -294,4 +294,38 @@ mod tests {
         // A term whose force never changes its sign in a day is a constant, and cannot be scaled.
         assert!(scaled >= 6, "{scaled}");
     }
+
+    #[test]
+    fn beside_a_random_walk_a_slow_drift_is_nothing_and_an_accelerometer_what_it_was() {
+        let scenario = Scenario {
+            duration_s: 86_400.0,
+            interval_s: 300.0,
+            gaps_s: Vec::new(),
+            ..scenario(3)
+        };
+        // Strength without a walk, and beside one of each gyro that does in a day what the effect does.
+        let strengths = |kind: UnlistedKind| {
+            let random = &mut Draw::new(5, 0);
+            let record = UnlistedRecord::draw(&scenario, kind, 10.0, random)
+                .unwrap()
+                .unwrap();
+            let (data, bench) = (&record.clean.record, &record.clean.bench);
+            let mut found = diagnose(data, bench, &DiagnoseOptions::default()).unwrap();
+            assert!(found.extended.is_none());
+            let without = record.strength_beside(&found).unwrap();
+            found.noise_model.gyro_walk_deg_per_h_per_sqrt_h = [0.003; 3];
+            [without, record.strength_beside(&found).unwrap()]
+        };
+        // The effect is scaled to 10 within a fifth, by the declared noise and not by that of the diagnosis.
+        for (kind, left) in [
+            (UnlistedKind::TimeProduct, 0.0..0.1),
+            (UnlistedKind::Lag, 0.0..0.1),
+            (UnlistedKind::Rectified, 0.9..1.0),
+            (UnlistedKind::AgeingScale, 0.9..1.0),
+        ] {
+            let [without, beside] = strengths(kind);
+            assert!((8.0..13.0).contains(&without), "{kind:?}: {without}");
+            assert!(left.contains(&(beside / without)), "{kind:?}: {beside}");
+        }
+    }
 }
