@@ -24,6 +24,18 @@ fn simulation() -> Simulation {
     .unwrap()
 }
 
+/// Two days of rows two minutes apart, with the declared noise alone.
+fn two_days(seed: u64) -> Simulation {
+    simulate(&Scenario {
+        seed,
+        duration_s: 2.0 * 86_400.0,
+        interval_s: 120.0,
+        initial: InitialAttitude::Random,
+        ..Scenario::default()
+    })
+    .unwrap()
+}
+
 #[test]
 fn noise_of_the_gyros_is_estimated_with_their_walks() {
     let simulation = simulation();
@@ -137,14 +149,7 @@ fn an_effect_that_is_left_out_leaves_the_likelihood_of_the_nominal_model() {
 
 #[test]
 fn degrees_of_freedom_are_those_of_refitted_covariances() {
-    let simulation = simulate(&Scenario {
-        seed: 12,
-        duration_s: 2.0 * 86_400.0,
-        interval_s: 120.0,
-        initial: InitialAttitude::Random,
-        ..Scenario::default()
-    })
-    .unwrap();
+    let simulation = two_days(12);
     let run = Run {
         record: &simulation.record,
         bench: &simulation.bench,
@@ -207,14 +212,7 @@ fn effects_take_no_degrees_off_the_restricted_noise() {
     const RECORDS: u64 = 20;
     let mut logarithms = [0.0; 2];
     for seed in 0..RECORDS {
-        let simulation = simulate(&Scenario {
-            seed,
-            duration_s: 2.0 * 86_400.0,
-            interval_s: 120.0,
-            initial: InitialAttitude::Random,
-            ..Scenario::default()
-        })
-        .unwrap();
+        let simulation = two_days(seed);
         let run = Run {
             record: &simulation.record,
             bench: &simulation.bench,

@@ -315,41 +315,6 @@ fn a_ramp_of_one_gyro_is_no_walk_of_it_beside_walks_of_the_others() {
 }
 
 #[test]
-fn the_time_constant_of_a_large_warm_up_is_that_of_the_noise_it_leaves() {
-    const TIME_CONSTANT_H: f64 = 3.0;
-    for seed in 0..3 {
-        // Some three hundred standard deviations, a part of them in a gap.
-        let parameters = [("size", 0.3), ("time_constant_h", TIME_CONSTANT_H)];
-        let found = diagnosed(Scenario {
-            seed,
-            duration_s: 2.5 * 86_400.0,
-            interval_s: 120.0,
-            gaps_s: vec![[7_200.0, 21_600.0]],
-            hidden: vec![Hidden::new("gyro_x.warmup", &parameters).unwrap()],
-            ..Scenario::default()
-        });
-        let causes: Vec<_> = found.causes().collect();
-        assert_eq!(causes.len(), 1, "{seed}: {causes:?}");
-        let shape = causes[0].parameter("time_constant_h").unwrap();
-        let pieces = shape.interval.as_deref().unwrap();
-        let [[low, high]] = pieces else {
-            panic!("{seed}: {pieces:?}");
-        };
-        assert!(
-            (*low..=*high).contains(&shape.estimate),
-            "{seed}: {shape:?}"
-        );
-        // Of a normal distribution one in eleven thousand is farther off than twice the 95 % interval.
-        let half = 0.5 * (high - low);
-        let off = (shape.estimate - TIME_CONSTANT_H).abs();
-        assert!(off < 2.0 * half, "{seed}: {shape:?}");
-        // Noise of some fifty degrees of freedom: Student's deviates of 200 and of 10 are 1.972 and 2.228.
-        let deviate = half / shape.sigma.unwrap();
-        assert!((1.972..2.228).contains(&deviate), "{seed}: {deviate}");
-    }
-}
-
-#[test]
 fn what_the_catalogue_does_not_hold_has_no_name_and_is_told() {
     type Case<'a> = (&'a str, &'a [(&'a str, f64)], &'a str, Option<&'a str>);
     let tone = |size| [("size", size), ("period_h", 5.3)];

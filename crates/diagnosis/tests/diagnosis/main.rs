@@ -11,6 +11,7 @@ mod magnitude_test;
 mod noise;
 mod outliers;
 mod records;
+mod shapes;
 mod signatures;
 mod strapdown;
 mod temperature;
