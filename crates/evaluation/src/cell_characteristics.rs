@@ -231,8 +231,6 @@ fn single(figures: &mut CellFigures, records: &[&RecordScore], strong: Option<([
         record.detected().then_some(record.findings.len() > 1)
     });
     figures.note("a spurious second", more);
-    let another = share(records, |record| Some(record.tells_of_another()));
-    figures.note("told of another cause", another);
 }
 
 fn set_size(figures: &mut CellFigures, records: &[&RecordScore]) {
