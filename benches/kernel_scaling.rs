@@ -1,5 +1,5 @@
 //! Cost of one filter step against the number of states n: three moving, the rest constant
-//! parameters in vectors of run-time length. `cargo figures kernel` holds it against n².
+//! parameters in vectors of run-time length. `cargo figures kernel --part filter` holds it against n².
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use std::hint::black_box;

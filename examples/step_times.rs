@@ -1,4 +1,4 @@
-//! Times of a filter step of the structured and of the textbook filter, which `cargo figures kernel`
+//! Times of a filter step of the structured and of the textbook filter, which `cargo figures kernel --part filter`
 //! reads in builds for several processors: `cargo run --release --example step_times -- ROUNDS`.
 //!
 //! For each rule of integration a line with three times in nanoseconds (structured, textbook,

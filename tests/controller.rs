@@ -187,7 +187,7 @@ fn single_precision_follows_double() {
     let others = double.drift().to_array().into_iter();
     let sigmas = double.drift_sigma().to_array();
     for ((value, reference), sigma) in numbers.zip(others).zip(sigmas) {
-        // The target of `cargo figures embedded`, over random records and five days.
+        // The target of `cargo figures embedded --part controller`, over random records and five days.
         let apart = (f64::from(value) - reference).abs() / sigma;
         assert!(apart < 0.1, "{value} and {reference}: {apart} sigma");
     }

@@ -5,7 +5,7 @@
 //! one chart: less work than the default filter does, whose chart moves at every step.
 //! `adskalman` and `multicalc` are Joseph-form filters of other packages on the same generated
 //! functions, of the Euler step only: with Runge-Kutta they would take the same dense step after
-//! the same transition. Compare within one run only; `cargo figures kernel` judges the ratios.
+//! the same transition. Compare within one run only; `cargo figures kernel --part filter` judges the ratios.
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use std::hint::black_box;

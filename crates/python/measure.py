@@ -1,4 +1,4 @@
-"""Measures what `cargo figures fleet` prints; writes JSON to stdout.
+"""Measures what `cargo figures doors --part fleet` prints; writes JSON to stdout.
 
 measure.py import               seconds of the import, in this process
 measure.py diagnosis            seconds of one diagnosis of the example from a frame

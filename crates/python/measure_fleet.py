@@ -1,4 +1,4 @@
-"""Fleets of short records on Dask: what `cargo figures fleet` prints of them."""
+"""Fleets of short records on Dask: what `cargo figures doors --part fleet` prints of them."""
 
 import os
 import random

@@ -14,7 +14,7 @@ use gyrocal_codegen::ir::{Expressions, lower};
 use gyrocal_codegen::{Options, Program, emit_module, emit_module_with};
 use gyrocal_oracle::rounding::{ROUNDOFF_F32, ROUNDOFF_F64, RunningError};
 
-/// The data, or those of `cargo figures generator`, which are more.
+/// The data, or those of `cargo figures kernel --part generator`, which are more.
 fn data(file: &str) -> String {
     let directory = std::env::var("GYROCAL_OPERATIONS_DATA");
     format!(
@@ -269,7 +269,7 @@ fn check_operations(values: &[Values], printed: &[Printed]) {
         all.any(|&(name, most, _)| name == function && apart <= most)
     };
     for (function, (apart, _)) in &worst {
-        // `cargo figures generator` prints these.
+        // `cargo figures kernel --part generator` prints these.
         match *apart {
             u64::MAX => println!("listed difference: {function} finite against not"),
             apart => println!("listed difference: {function} {apart}"),

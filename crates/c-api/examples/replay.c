@@ -1,7 +1,7 @@
 /* Replays a record as a controller would, saves and restores half-way, and prints the bits of all
  * results: the program of the host and of the target, compared with the Rust filter.
  *
- * record.h, which `cargo figures embedded` makes, has RECORD_ROWS and RECORD_G. */
+ * record.h, which `cargo figures embedded --part controller` makes, has RECORD_ROWS and RECORD_G. */
 #include "gyrocal.h"
 #include "output.h"
 #include "record.h"

@@ -8,7 +8,7 @@
 #ifndef GYROCAL_H
 #define GYROCAL_H
 
-/* Made by cbindgen from crates/c-api; do not edit. `cargo figures embedded` checks it. */
+/* Made by cbindgen from crates/c-api; do not edit. `cargo figures embedded --part controller` checks it. */
 
 #include <stddef.h>
 #include <stdint.h>

@@ -81,7 +81,7 @@ pub unsafe extern "C" fn gyrocal_init(
         filter: ControllerFilter::unset(),
     };
     // SAFETY: the memory is as large and as aligned as its contents. The compiler writes there at
-    // once; `cargo figures embedded` prints the stack that this function takes.
+    // once; `cargo figures embedded --part controller` prints the stack that this function takes.
     unsafe { ptr::write(filter.cast::<Inner>(), unset) };
     // SAFETY: both are valid, as the caller vouches.
     let (inner, settings) = match (unsafe { inner(filter) }, unsafe { &*settings }) {

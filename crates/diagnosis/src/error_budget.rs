@@ -88,13 +88,13 @@ pub const TABLE: [Line; 16] = [
         test: "noise audit",
         value: NOISE_AUDIT_SHARE,
         meaning: "share of α; a quarter each for outliers, level and correlation, one unspent",
-        origin: Origin::Choice("rate measured by `cargo figures diagnosis-ground`"),
+        origin: Origin::Choice("rate measured by `cargo figures diagnosis --part ground`"),
     },
     Line {
         test: "gyro noise",
         value: GYRO_NOISE_SHARE,
         meaning: "share of α; three gyros, Bonferroni",
-        origin: Origin::Choice("rate measured by `cargo figures naming`"),
+        origin: Origin::Choice("rate measured by `cargo figures diagnosis --part naming`"),
     },
     Line {
         test: "search over the catalogue",
@@ -112,7 +112,7 @@ pub const TABLE: [Line; 16] = [
         test: "reserve",
         value: RESERVE,
         meaning: "part of α that no test spends: drawn thresholds and asymptotic p-values are a little off",
-        origin: Origin::Calibrated("`cargo figures naming`, clean records"),
+        origin: Origin::Calibrated("`cargo figures diagnosis --part naming`, clean records"),
     },
     Line {
         test: "magnitude test, Allan test",
@@ -148,13 +148,13 @@ pub const TABLE: [Line; 16] = [
         test: "walks or effects",
         value: WALK_SET_DEVIANCE,
         meaning: "twice the log-likelihood by which effects must be better than walks to stand alone",
-        origin: Origin::Calibrated("`cargo figures truth`, random walks"),
+        origin: Origin::Calibrated("`cargo figures diagnosis`, random walks"),
     },
     Line {
         test: "effects beside walks",
         value: BESIDE_WALKS,
         meaning: "twice the log-likelihood above the threshold that an effect must gain beside walks",
-        origin: Origin::Calibrated("`cargo figures truth`, random walks"),
+        origin: Origin::Calibrated("`cargo figures diagnosis`, random walks"),
     },
     Line {
         test: "detection",
@@ -172,13 +172,13 @@ pub const TABLE: [Line; 16] = [
         test: "confidence set",
         value: CONFIDENCE_SET_DEVIANCE,
         meaning: "largest difference of penalised statistics within the set",
-        origin: Origin::Calibrated("`cargo figures naming`: 95 % coverage at 5 sigma"),
+        origin: Origin::Calibrated("`cargo figures diagnosis --part naming`: 95 % coverage at 5 sigma"),
     },
     Line {
         test: "cross-validation",
         value: 0.0,
         meaning: "log score in nats that an accepted cause must exceed",
-        origin: Origin::Calibrated("`cargo figures gain`"),
+        origin: Origin::Calibrated("`cargo figures diagnosis --part gain`"),
     },
 ];
 

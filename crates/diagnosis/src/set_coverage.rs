@@ -14,7 +14,7 @@ const MOST: f64 = 0.99;
 /// deviations large, the noise unknown. Rounded down to a hundredth, and 0.99 where all sets
 /// did.
 ///
-/// `cargo figures truth --part causes` measures it, and `docs/figures/truth.md` has the number
+/// `cargo figures diagnosis --part causes` measures it, and `docs/figures/diagnosis.md` has the number
 /// of records and the interval of each.
 pub const SET_COVERAGE: [(EffectKind, f64); 8] = [
     (EffectKind::Constant, 0.98),

@@ -21,7 +21,7 @@ use crate::form::{Form, Numbers, Observation, Transition, Zeros};
 use crate::innovation::Innovation;
 
 /// The factors U and D: P is symmetric and positive definite whatever rounding does, in single
-/// precision and from wide priors. `cargo figures kernel` prints how much longer a step takes than
+/// precision and from wide priors. `cargo figures kernel --part filter` prints how much longer a step takes than
 /// with [`crate::Covariance`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Factors;

@@ -229,6 +229,12 @@ impl<T> Outcome<T> {
             .filter_map(|(seed, result)| Some((*seed, result.as_ref().ok()?)))
     }
 
+    /// The same by value.
+    pub fn into_successes(self) -> impl Iterator<Item = (u64, T)> {
+        let results = self.results.into_iter();
+        results.filter_map(|(seed, result)| Some((seed, result.ok()?)))
+    }
+
     /// Seeds whose job failed, with the message.
     pub fn failures(&self) -> impl Iterator<Item = Failure> {
         self.results.iter().filter_map(|(seed, result)| {

@@ -13,6 +13,7 @@ use crate::characteristic::{CellFigures, Characteristic};
 use crate::effect_family::{FamilyRow, families};
 use crate::population::PopulationCell;
 use crate::record_score::{RecordScore, SAME_CLASS_COSINE};
+use crate::statistic::{Statistic, Target};
 
 /// A stricter limit than [`SAME_CLASS_COSINE`], for information.
 const STRICT_CLASS_COSINE: f64 = 0.97;
@@ -65,15 +66,20 @@ pub fn characteristics(
         PopulationCell::Step => step(&mut figures, &records),
         PopulationCell::Cubic => {
             let silent = share(&records, |record| Some(record.verdict == "clean"));
-            figures.at_least("silent", 0.75, silent);
+            figures.judge("silent", Target::AtLeast(0.75), silent);
         }
         PopulationCell::Azimuth => {
             let first = share(&records, |record| {
                 let first = record.findings.first();
                 Some(first.is_some_and(|first| is_of_kind(&first.effect, EffectKind::InitialState)))
             });
-            figures.at_least("named `platform.initial_attitude`", 0.95, first);
-            figures.mean("its mean size in sigmas", &strengths(&records));
+            figures.judge(
+                "named `platform.initial_attitude`",
+                Target::AtLeast(0.95),
+                first,
+            );
+            let strengths = Statistic::Mean(strengths(&records));
+            figures.note("its mean size in sigmas", strengths);
         }
     }
     let single_names = records.iter().flat_map(|record| &record.findings);
@@ -95,8 +101,8 @@ pub fn characteristics(
     figures.all
 }
 
-fn share(records: &[&RecordScore], of: impl Fn(&RecordScore) -> Option<bool>) -> Proportion {
-    Proportion::of(records.iter().filter_map(|record| of(record)))
+fn share(records: &[&RecordScore], of: impl Fn(&RecordScore) -> Option<bool>) -> Statistic {
+    Statistic::share(records, |record| of(record))
 }
 
 /// The same for each injected effect separately: some are injected more often than others.
@@ -124,9 +130,14 @@ fn strengths(records: &[&RecordScore]) -> Vec<f64> {
 }
 
 fn clean(figures: &mut CellFigures, records: &[&RecordScore]) {
-    let alarms = share(records, |record| Some(record.verdict != "clean"));
-    figures.bound_at_most("false alarms, upper 95 % bound", 0.02, alarms);
-    figures.note("false alarms", alarms);
+    let alarms = Proportion::of(records.iter().map(|record| record.verdict != "clean"));
+    // The level is 1 %: of 2000 records 27 are within the bound, and twenty are due.
+    figures.judge(
+        "false alarms, upper 95 % bound",
+        Target::AtMost(0.02),
+        Statistic::Bound(alarms),
+    );
+    figures.note("false alarms", Statistic::Share(alarms));
     let by = |of: fn(&RecordScore) -> bool| share(records, |record| Some(of(record)));
     figures.note("false alarms of the search", by(|record| record.detected()));
     figures.note(
@@ -146,21 +157,26 @@ fn weak(figures: &mut CellFigures, records: &[&RecordScore], least: f64) {
         .iter()
         .filter_map(|record| Some([in_set(record), record.oracle_in_set?]))
         .collect();
-    let of = |which: usize| Proportion::of(both.iter().map(|pair| pair[which]));
+    let of = |which: usize| Statistic::share(&both, |pair| Some(pair[which]));
     let pairs: Vec<[f64; 2]> = both
         .iter()
         .map(|pair| pair.map(|held| f64::from(u8::from(held))))
         .collect();
     let all = by_effect(records, |record| Some(record.detected()));
-    figures.average_at_least("detected, average of the effects", least, &all);
+    figures.judge(
+        "detected, average of the effects",
+        Target::AtLeast(least),
+        Statistic::Average(all),
+    );
     let ratio = "a set holds the truth, over a search that knows that no rate walks";
-    figures.ratio_at_least(ratio, OF_ORACLE, &pairs);
+    figures.judge(ratio, Target::AtLeast(OF_ORACLE), Statistic::Ratio(pairs));
     figures.note("a set holds the truth, of all", of(0));
     figures.note("the same of that search", of(1));
     let detected = share(records, |record| Some(record.detected()));
-    figures.mean(
+    let expected = coverage_given_detection(detected.value());
+    figures.note(
         "95 % interval of the size, expected of what is detected as often",
-        &[coverage_given_detection(detected.share())],
+        Statistic::Value(expected, detected.runs()),
     );
 }
 
@@ -182,7 +198,11 @@ fn single(figures: &mut CellFigures, records: &[&RecordScore], strong: Option<([
     let first = strong.map(|(_, first)| first);
     if let Some(([average, worst], _)) = strong {
         let of = by_effect(records, |record| Some(record.detected()));
-        figures.average_at_least("detected, average of the effects", average, &of);
+        figures.judge(
+            "detected, average of the effects",
+            Target::AtLeast(average),
+            Statistic::Average(of),
+        );
         let all = families(records);
         // Jumps of the attitude have three sizes at any row, and are found less often.
         let is_jump = |row: &FamilyRow| {
@@ -193,9 +213,13 @@ fn single(figures: &mut CellFigures, records: &[&RecordScore], strong: Option<([
             let some = all.iter().filter(|row| is_jump(row) == jumps);
             some.map(|row| row.detected()).collect()
         };
-        figures.none_below("detected, the worst family but knocks", worst, &of(false));
-        if let [jumps] = of(true).as_slice() {
-            figures.none_below("detected, knocks", worst, &[*jumps]);
+        for (name, of) in [
+            ("detected, the worst family but knocks", of(false)),
+            ("detected, knocks", of(true)),
+        ] {
+            if !of.is_empty() {
+                figures.judge(name, Target::AtLeast(worst), Statistic::Least(of));
+            }
         }
     }
     let in_set = share(records, |record| {
@@ -203,7 +227,11 @@ fn single(figures: &mut CellFigures, records: &[&RecordScore], strong: Option<([
             .detected()
             .then(|| record.hidden.iter().all(|hidden| hidden.in_set))
     });
-    figures.at_least("the named set holds the truth", 0.95, in_set);
+    figures.judge(
+        "the named set holds the truth",
+        Target::AtLeast(0.95),
+        in_set,
+    );
     set_size(figures, records);
     let right = |record: &RecordScore, cosine: f64| {
         let hidden = record.hidden.first()?;
@@ -211,10 +239,12 @@ fn single(figures: &mut CellFigures, records: &[&RecordScore], strong: Option<([
     };
     let first_at = |cosine: f64| share(records, move |record| right(record, cosine));
     match first {
-        Some(least) => figures.average_at_least(
+        Some(least) => figures.judge(
             "the class named first is right, average of the effects",
-            least,
-            &by_effect(records, |record| right(record, SAME_CLASS_COSINE)),
+            Target::AtLeast(least),
+            Statistic::Average(by_effect(records, |record| {
+                right(record, SAME_CLASS_COSINE)
+            })),
         ),
         None => figures.note(
             "the class named first is right",
@@ -239,12 +269,16 @@ fn set_size(figures: &mut CellFigures, records: &[&RecordScore]) {
         .filter(|record| record.detected())
         .filter_map(|record| Some([record.set_size() as f64, record.oracle_set_size? as f64]))
         .collect();
-    figures.ratio_at_most("mean size of the set over the oracle's", 1.2, &sizes);
-    let own: Vec<f64> = sizes.iter().map(|pair| pair[0]).collect();
-    figures.mean("mean size of the set", &own);
-    figures.mean(
+    let own = Statistic::Mean(sizes.iter().map(|pair| pair[0]).collect());
+    figures.judge(
+        "mean size of the set over the oracle's",
+        Target::AtMost(1.2),
+        Statistic::Ratio(sizes),
+    );
+    figures.note("mean size of the set", own);
+    figures.note(
         "mean size of the smallest sets that hold it in 95 %",
-        &smallest(records),
+        Statistic::Mean(smallest(records)),
     );
 }
 
@@ -273,18 +307,18 @@ fn covered(figures: &mut CellFigures, records: &[&RecordScore]) {
         .iter()
         .flat_map(|record| &record.hidden)
         .filter_map(|hidden| hidden.covered);
-    figures.at_least(
+    figures.judge(
         "95 % interval of the size holds it, given the right name",
-        0.93,
-        Proportion::of(covered),
+        Target::AtLeast(0.93),
+        Statistic::Share(Proportion::of(covered)),
     );
 }
 
 fn pair(figures: &mut CellFigures, records: &[&RecordScore]) {
     let each = share(records, |record| Some(record.each_in_its_set()));
-    figures.at_least("each in its set", 0.90, each);
+    figures.judge("each in its set", Target::AtLeast(0.90), each);
     let third = share(records, |record| Some(record.findings.len() > 2));
-    figures.at_most("a spurious third", 0.08, third);
+    figures.judge("a spurious third", Target::AtMost(0.08), third);
     covered(figures, records);
 }
 
@@ -296,15 +330,15 @@ fn out_of_catalogue(figures: &mut CellFigures, records: &[&RecordScore]) {
     let told = share(records, |record| {
         reached(record).then(|| record.tells_of_another())
     });
-    figures.at_least(
+    figures.judge(
         "told: unexplained, or none of these above a half",
-        0.98,
+        Target::AtLeast(0.98),
         told,
     );
     // Records where the names took up most of the effect are in the note alone.
     let named = |record: &RecordScore| record.detected() && !record.tells_of_another();
     let masked = share(records, |record| reached(record).then(|| named(record)));
-    figures.at_most("a false name, and not told", 0.05, masked);
+    figures.judge("a false name, and not told", Target::AtMost(0.05), masked);
     figures.note(
         "the same, of all records",
         share(records, |record| Some(named(record))),
@@ -326,9 +360,9 @@ fn out_of_catalogue(figures: &mut CellFigures, records: &[&RecordScore]) {
 fn step(figures: &mut CellFigures, records: &[&RecordScore]) {
     const NEAR: f64 = 0.05;
     let onset = |record: &RecordScore| record.hidden.first().and_then(|hidden| hidden.onset_error);
-    figures.at_least(
+    figures.judge(
         "onset within 5 % of the record, given the right name",
-        0.90,
+        Target::AtLeast(0.90),
         share(records, |record| onset(record).map(|error| error <= NEAR)),
     );
     figures.note(

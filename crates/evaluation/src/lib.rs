@@ -91,6 +91,7 @@ mod record_score;
 mod scenario;
 mod score;
 mod signature;
+mod statistic;
 mod unlisted;
 
 pub use baseline::{BaselineMethod, BaselineResult};
@@ -101,7 +102,7 @@ pub use campaign::{Campaign, Failure, Fingerprint, Outcome, Progress, program};
 pub use catalogue::{constant_of_channel, effect_family, effect_of, same_or_equivalent};
 pub use cell_characteristics::characteristics;
 pub use characterise_report::{CellReport, CharacteriseReport, cell_campaign, cell_report};
-pub use characteristic::{Characteristic, Target};
+pub use characteristic::Characteristic;
 pub use coefficient_score::CoefficientScore;
 pub use comparison::{ComparisonRow, OWN_METHOD, comparison};
 pub use effect_family::{FamilyRow, families};
@@ -119,4 +120,5 @@ pub use record_score::{
 };
 pub use scenario::scenario;
 pub use signature::{Signature, SignatureColumns};
+pub use statistic::{Statistic, Target};
 pub use unlisted::{UnlistedEffect, UnlistedKind};

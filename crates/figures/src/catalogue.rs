@@ -16,7 +16,7 @@ use crate::values::Values;
 /// Template of the page.
 pub(crate) const TEMPLATE: &str = include_str!("catalogue/page.md");
 
-const TOPIC: &str = "catalogue";
+const TOPIC: &str = "diagnosis --part catalogue";
 
 /// All figures of the topic; with `write` page and pictures are renewed instead of compared.
 pub(crate) fn figures(write: bool) -> Result<Vec<Figure>, Error> {

@@ -38,3 +38,18 @@ impl Peak {
         Some(kibibytes * 1024.0 / 1e6)
     }
 }
+
+/// Processor time of this process, s; zero if the kernel does not provide it.
+pub(crate) fn process_s() -> f64 {
+    // Ticks of a hundredth of a second, proc(5); the name in parentheses may have blanks.
+    const TICKS_PER_S: f64 = 100.0;
+    let text = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
+    let after_name = text.rsplit(')').next().unwrap_or_default();
+    let fields = after_name.split_whitespace();
+    // User and system time are fields 14 and 15, the first after the name is the third.
+    let ticks = fields
+        .skip(11)
+        .take(2)
+        .filter_map(|field| field.parse::<f64>().ok());
+    ticks.sum::<f64>() / TICKS_PER_S
+}

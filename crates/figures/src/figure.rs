@@ -1,15 +1,21 @@
 //! Figures of the documentation with their targets, and their table.
 
 use comfy_table::{ContentArrangement, Table, presets};
-use gyrocal_statistics::{Judgement, Proportion};
+use gyrocal_evaluation::{Statistic, Target};
+use gyrocal_statistics::{Judgement, Proportion, standard_error};
+use gyrocal_testkit::workspace;
+
+use crate::harness::pages;
 
 /// One figure: target and measurement.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Figure {
     /// Name of the figure.
     pub(crate) name: String,
     /// Target, in words.
     pub(crate) target: String,
+    /// Why the target is what it is; empty where the name says it.
+    pub(crate) reason: String,
     /// Measured value, in words.
     pub(crate) measured: String,
     /// Number of runs that it is measured over.
@@ -37,10 +43,37 @@ impl Figure {
             },
             measured: format!("{measured:.3}"),
             runs: 1,
-            seeds: String::new(),
             holds: Some(bounds[0] <= measured && measured <= bounds[1]),
-            too_few: false,
-            share: None,
+            ..Self::default()
+        }
+    }
+
+    /// A statistic of a population, which is as large as its target asks for (`full`), or smaller.
+    pub(crate) fn of_statistic(
+        name: &str,
+        of: &Statistic,
+        target: Option<Target>,
+        full: bool,
+    ) -> Self {
+        let (value, runs) = (of.value(), of.runs());
+        let judgement = target.map(|target| of.judged(target, full));
+        Self {
+            name: name.to_owned(),
+            target: target.map_or_else(String::new, |target| target.to_string()),
+            measured: match (of, of.interval()) {
+                _ if runs == 0 => "nothing to measure on".to_owned(),
+                (Statistic::Bound(share), _) => format!("{:.4}, bound {value:.4}", share.share()),
+                (_, Some([low, high])) => format!("{value:.3} ({low:.3} to {high:.3})"),
+                (Statistic::Mean(values), None) if values.len() > 1 => {
+                    format!("{value:.3} (standard error {:.3})", standard_error(values))
+                }
+                _ => format!("{value:.3}"),
+            },
+            runs: runs as usize,
+            holds: judgement.and_then(Judgement::holds),
+            too_few: judgement == Some(Judgement::TooFew),
+            share: of.proportion(),
+            ..Self::default()
         }
     }
 
@@ -60,10 +93,8 @@ impl Figure {
             target: "yes".to_owned(),
             measured: if measured { "yes" } else { "no" }.to_owned(),
             runs: 1,
-            seeds: String::new(),
             holds: Some(measured),
-            too_few: false,
-            share: None,
+            ..Self::default()
         }
     }
 
@@ -71,13 +102,9 @@ impl Figure {
     pub(crate) fn note(name: &str, measured: String) -> Self {
         Self {
             name: name.to_owned(),
-            target: String::new(),
             measured,
             runs: 1,
-            seeds: String::new(),
-            holds: None,
-            too_few: false,
-            share: None,
+            ..Self::default()
         }
     }
 
@@ -130,29 +157,48 @@ pub(crate) fn coverage(covered: Proportion, band: [f64; 2]) -> Judgement {
     )
 }
 
-/// The figures as a table.
-pub(crate) fn table(figures: &[Figure]) -> Table {
+/// The figures as a table, with the commit that they are measured at, and the reasons of targets where there are any.
+pub(crate) fn table_of(figures: &[Figure]) -> String {
+    let commit = pages::commit(&workspace());
+    let with_reasons = figures.iter().any(|figure| !figure.reason.is_empty());
     let mut table = Table::new();
+    let mut header = vec![
+        "figure", "target", "measured", "runs", "seeds", "commit", "holds",
+    ];
+    header.extend(with_reasons.then_some("reason of the target"));
     table
         .load_style(presets::ASCII_MARKDOWN)
         .set_content_arrangement(ContentArrangement::Disabled)
-        .set_header(["figure", "target", "measured", "runs", "seeds", "holds"]);
+        .set_header(header);
     for figure in figures {
-        table.add_row([
-            figure.name.clone(),
-            figure.target.clone(),
-            figure.measured.clone(),
-            figure.runs.to_string(),
-            figure.seeds.clone(),
-            match figure.holds {
-                Some(true) => "yes".to_owned(),
-                Some(false) => "NO".to_owned(),
-                None if figure.too_few => "too few records to tell".to_owned(),
-                None => String::new(),
-            },
-        ]);
+        let holds = match figure.holds {
+            Some(true) => "yes",
+            Some(false) => "NO",
+            None if figure.too_few => "too few records to tell",
+            None => "",
+        };
+        let runs = figure.runs.to_string();
+        let Figure {
+            name,
+            target,
+            measured,
+            seeds,
+            reason,
+            ..
+        } = figure;
+        let mut row = vec![
+            name.as_str(),
+            target,
+            measured,
+            &runs,
+            seeds,
+            &commit,
+            holds,
+        ];
+        row.extend(with_reasons.then_some(reason.as_str()));
+        table.add_row(row);
     }
-    table
+    table.to_string()
 }
 
 #[cfg(test)]
@@ -164,7 +210,7 @@ mod tests {
         let of = |hits, trials| {
             let share = Proportion { hits, trials };
             let figure = Figure::within("detected", [0.99, f64::INFINITY], share.share());
-            table(&[figure.judged(share.at_least(0.99))]).to_string()
+            table_of(&[figure.judged(share.at_least(0.99))])
         };
         assert!(of(45, 45).contains("| too few records to tell |"));
         assert!(of(20, 45).contains("| NO "));

@@ -10,7 +10,6 @@ mod sizes;
 mod source;
 
 use std::path::Path;
-use std::process::Command;
 
 use gyrocal::EFFECTS;
 use gyrocal_testkit::{WorkspaceCopy, add_own_terms, cargo, find_own_terms, workspace};
@@ -80,26 +79,6 @@ pub(crate) fn figures(small: bool, write: bool) -> Result<Vec<Figure>, Error> {
         figures.extend(builds::figures(&root)?);
     }
     Ok(figures)
-}
-
-/// The commit of a workspace, as far as `git` tells it; `-dirty` if files differ from it but for the pages of
-/// figures, which one part after the other writes.
-pub(crate) fn commit(root: &Path) -> String {
-    let git = |arguments: &[&str]| {
-        let mut command = Command::new("git");
-        let output = command.arg("-C").arg(root).args(arguments).output().ok()?;
-        let text = String::from_utf8_lossy(&output.stdout).trim().to_owned();
-        output.status.success().then_some(text)
-    };
-    let Some(commit) = git(&["describe", "--always", "--exclude=*"]) else {
-        return "unknown".to_owned();
-    };
-    let tracked = ["status", "--porcelain", "--untracked-files=no"];
-    let but_pages = ["--", ":/", ":(top,exclude)docs/figures"];
-    match git(&[tracked.as_slice(), &but_pages].concat()) {
-        Some(changes) if changes.is_empty() => commit,
-        _ => format!("{commit}-dirty"),
-    }
 }
 
 /// A figure that counts places, all of which are listed.
@@ -182,7 +161,6 @@ fn own_terms() -> Result<Figure, Error> {
         runs: found.len(),
         seeds: "5 to 8".to_owned(),
         holds: Some(within == 4 && found.len() == 4),
-        too_few: false,
-        share: None,
+        ..Figure::default()
     })
 }

@@ -5,7 +5,7 @@ mod oracle;
 mod positions;
 mod rates;
 mod rates_simulation;
-mod records;
+pub(crate) mod records;
 mod stops;
 mod vertical;
 
@@ -25,23 +25,10 @@ const LARGE_CELL: usize = 1000;
 pub(crate) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
     let mut figures = allan::figures(extent)?;
     figures.extend(positions::figures(extent)?);
-    figures.extend(records::figures(extent)?);
     figures.extend(stops::figures(extent)?);
     figures.extend(vertical::figures(extent)?);
     figures.extend(rates::figures(extent)?);
-    figures.push(recordings()?);
     Ok(figures)
-}
-
-/// The recordings in the tree, as the topic `measured` judges them.
-fn recordings() -> Result<Figure, Error> {
-    let rows = crate::measured::figures(false)?;
-    let judged: Vec<bool> = rows.iter().filter_map(|row| row.holds).collect();
-    let missed = judged.iter().filter(|holds| !**holds).count();
-    let name = "the two recordings in the tree: rows of `cargo figures measured` that do not hold";
-    let mut figure = Figure::within(name, [0.0, 0.0], missed as f64);
-    figure.measured = format!("{missed} of {}", judged.len());
-    Ok(figure)
 }
 
 /// Share of 95 % intervals that contain the truth.

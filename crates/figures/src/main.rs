@@ -1,5 +1,5 @@
-//! `cargo figures TOPIC` measures the figures that the documentation claims and prints them with target,
-//! number of runs and seeds. The exit code is 1 if a figure does not hold.
+//! `cargo figures TOPIC` measures the figures that the documentation claims and prints them with target, number of
+//! runs, seeds and commit. The exit code is 1 if a figure does not hold.
 
 mod any_plant;
 mod calibration;
@@ -12,7 +12,9 @@ mod error;
 mod figure;
 mod fleet;
 mod gain;
+mod gate;
 mod generator;
+mod harness;
 mod house;
 mod kernel;
 mod logs;
@@ -24,231 +26,183 @@ mod paper;
 mod plant_peers;
 mod report;
 mod resumable;
-mod topic_page;
+mod topics;
 mod truth;
 mod uncertainty;
 mod values;
 mod watch;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use clap::{Parser, ValueEnum};
+use clap::{Args as _, Command, FromArgMatches as _};
 
 use error::Error;
-use figure::{Figure, table};
-use topic_page::Origin;
+use figure::{Figure, table_of};
+use gate::Section;
+use harness::night::Night;
+use harness::topic::Topic;
+use harness::{Context, Seeds, Size, pages};
+use topics::TOPICS;
 
-#[derive(Parser)]
-#[command(
-    name = "figures",
-    about = "Measures and prints the figures that the documentation claims"
-)]
-struct Arguments {
-    /// Topic to measure.
-    topic: Topic,
-    /// Fewer runs, and nothing that builds copies of the workspace: what continuous integration
-    /// runs. Targets stay as they are.
+/// How much of a topic is measured, on development seeds.
+#[derive(clap::Args, Debug)]
+struct Extent {
+    /// Only these parts.
+    #[arg(long = "part", value_name = "PART")]
+    parts: Vec<String>,
+    /// Fewer runs, and nothing that builds copies of the workspace: what continuous integration runs.
     #[arg(long)]
     small: bool,
-    /// Only these parts of the topic (truth).
-    #[arg(long = "part", value_name = "PART")]
-    parts: Vec<truth::Part>,
-    /// Most records of each population (truth, naming, logs, any-plant, plant-peers, watch, uncertainty; fleet: without the Python package): a part of the full version, which goes on from there.
-    #[arg(long, value_name = "COUNT")]
+    /// Most records of each population.
+    #[arg(long, value_name = "COUNT", conflicts_with = "small")]
     records: Option<u64>,
-    /// Also write the table into this file, with the command that printed it.
+    /// Also write the table into this file.
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
-    /// Renew the committed measurements of the topic instead of judging by them (kernel:
-    /// instruction counts; house: results of the records; measured: docs/measured-data.md; paper
-    /// and catalogue: their page and its pictures; truth: the sections of its parts; all others:
-    /// docs/figures/TOPIC.md). With --records the page says so.
+    /// Renew documents and committed measurements of the parts instead of judging by them.
     #[arg(long, conflicts_with = "small")]
     write: bool,
 }
 
-impl Arguments {
-    /// The options that leave out a part of the topic, as they are given.
-    fn extent(&self) -> String {
-        let mut extent = String::new();
-        if self.small {
-            extent.push_str(" --small");
+impl Extent {
+    fn context(&self) -> Context {
+        let size = match self.records {
+            Some(most) => Size::Most(most),
+            None if self.small => Size::Small,
+            None => Size::Full,
+        };
+        let context = Context::new(size, Seeds::Development).writing(self.write);
+        match self.small {
+            true => context,
+            false => context.kept(gyrocal_testkit::workspace().join("target/figures")),
         }
-        for part in &self.parts {
-            extent = format!("{extent} --part {}", part.name());
-        }
-        if let Some(records) = self.records {
-            extent = format!("{extent} --records {records}");
-        }
-        extent
     }
 }
 
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Topic {
-    /// Five simulated plants with hidden effects: alarms, sets, gain, starts, time.
-    AnyPlant,
-    /// The diagnosis of a plant beside sparse and symbolic regression from PyPI.
-    PlantPeers,
-    /// From symbols to nine drift coefficients.
-    MainJob,
-    /// The batch estimator: consistency over a population, exactness, cost.
-    Calibration,
-    /// The catalogue of effects: docs/catalogue.md and a picture of each signature.
-    Catalogue,
-    /// The structured kernel: speed, scaling, rounding errors, instructions.
-    Kernel,
-    /// The generator of Rust against others: speed, instructions, operations, random graphs.
-    Generator,
-    /// Foundations of the diagnosis: the noise audit, and signatures against the simulation.
-    DiagnosisGround,
-    /// The filter in a controller: an emulated Cortex-M4F, single precision.
-    Embedded,
-    /// Operating characteristics of the diagnosis on records with injected effects and on clean ones.
-    Naming,
-    /// The diagnosis beside the usual tests and selection methods, on the same records.
-    Comparison,
-    /// Gain of extended models: in cross-validation, in the coefficients, and on a second record.
-    Gain,
-    /// Structure of the tree, equal results before and after, cost of a build.
-    House,
-    /// Two recordings of real gyros: docs/measured-data.md.
-    Measured,
-    /// Instrument tests on simulated logs: noise, positions, stops.
-    Logs,
-    /// The report: its files, in a browser; pictures of it.
-    Report,
-    /// Truth of the diagnosis outside of the population that its constants were tuned on.
-    Truth,
-    /// The watch beside the filter: false alarms, delays, jumps, sets in simulated platform-years.
-    Watch,
-    /// The paper, reproduced and corrected: docs/paper.md and its pictures.
-    Paper,
-    /// The uncertainty budget against simulated and calibrated runs.
-    Uncertainty,
-    /// The Python package: its wheel, a first diagnosis with it, fleets of records.
-    Fleet,
+fn definition() -> Command {
+    let topics = TOPICS.iter().map(|topic| {
+        let parts = topic
+            .parts
+            .iter()
+            .map(|part| format!("  {}: {}", part.name, part.about));
+        let parts: Vec<String> = parts.collect();
+        let command = Command::new(topic.name).about(topic.about);
+        Extent::augment_args(command.after_help(format!("Parts:\n{}", parts.join("\n"))))
+    });
+    let night = Command::new("night")
+        .about("Every part at full size on report seeds, in pieces; renews the pages");
+    let check =
+        Command::new("check").about("The small version of every topic, compared with the pages");
+    let section = Command::new("section").about("Slow sections of the gate and their stamps");
+    Command::new("figures")
+        .about("Measures and prints the figures that the documentation claims")
+        .subcommand_required(true)
+        .subcommands(topics)
+        .subcommands([
+            Night::augment_args(night),
+            check,
+            Section::augment_args(section),
+        ])
 }
 
 fn main() -> ExitCode {
-    let arguments = Arguments::parse();
-    let extent = truth::Extent {
-        small: arguments.small,
-        most: arguments.records,
-    };
-    let origin = Origin::now(&arguments.topic.name(), &arguments.extent());
-    let figures = match arguments.topic {
-        Topic::AnyPlant => any_plant::figures(extent),
-        Topic::PlantPeers => plant_peers::figures(extent),
-        Topic::MainJob => main_job::figures(arguments.small),
-        Topic::Calibration => calibration::figures(arguments.small),
-        Topic::Catalogue => catalogue::figures(arguments.write),
-        Topic::Kernel => kernel::figures(arguments.small, arguments.write),
-        Topic::Generator => generator::figures(arguments.small),
-        Topic::DiagnosisGround => diagnosis_ground::figures(arguments.small),
-        Topic::Embedded => embedded::figures(arguments.small),
-        Topic::Naming => naming::figures(extent),
-        Topic::Comparison => comparison::figures(arguments.small),
-        Topic::Gain => gain::figures(arguments.small),
-        Topic::House => house::figures(arguments.small, arguments.write),
-        Topic::Measured => measured::figures(arguments.write),
-        Topic::Logs => logs::figures(extent),
-        Topic::Report => report::figures(arguments.small, arguments.write),
-        Topic::Truth => truth::figures(extent, &arguments.parts, |part, figures| {
-            let path = topic_page::path(&origin.topic);
-            let table = table(figures).to_string();
-            match arguments.write {
-                true => topic_page::write_part(
-                    &path,
-                    &origin,
-                    &part.name(),
-                    &truth::Part::names(),
-                    &table,
-                ),
-                false => Ok(()),
-            }
-        }),
-        Topic::Watch => watch::figures(extent),
-        Topic::Uncertainty => uncertainty::figures(extent),
-        Topic::Paper => paper::figures(arguments.write),
-        Topic::Fleet => fleet::figures(extent),
-    };
-    match figures {
-        Ok(mut figures) => {
-            let written = written(&arguments, &origin, &figures);
-            if arguments.small {
-                figures.extend(compared(arguments.topic, &figures));
-            }
-            println!("{}", table(&figures));
-            if let Err(error) = written {
-                eprintln!("{error}");
-                return ExitCode::FAILURE;
-            }
-            let failed = figures
-                .iter()
-                .filter(|figure| figure.holds == Some(false))
-                .count();
-            if failed == 0 {
-                ExitCode::SUCCESS
-            } else {
-                eprintln!("{failed} of {} figures do not hold", figures.len());
-                ExitCode::FAILURE
-            }
+    let matches = definition().get_matches();
+    let measured = match matches.subcommand() {
+        Some(("night", matches)) => Night::from_arg_matches(matches)
+            .map_err(Error::from)
+            .and_then(|night| night.run(&TOPICS)),
+        Some(("check", _)) => check(),
+        Some(("section", matches)) => {
+            let section = Section::from_arg_matches(matches).map_err(Error::from);
+            return match section.and_then(|section| section.run()) {
+                Ok(()) => ExitCode::SUCCESS,
+                Err(error) => failed(&error),
+            };
         }
-        Err(error) => {
-            eprintln!("figures could not be measured: {error}");
-            ExitCode::FAILURE
-        }
-    }
-}
-
-impl Topic {
-    /// Its name on the command line.
-    fn name(self) -> String {
-        let value = self.to_possible_value();
-        value.map_or_else(String::new, |value| value.get_name().to_owned())
-    }
-
-    /// `true` if `--write` renews the page of figures as a whole and no other measurements.
-    fn writes_its_page(self) -> bool {
-        !matches!(
-            self,
-            Self::Kernel
-                | Self::House
-                | Self::Measured
-                | Self::Paper
-                | Self::Catalogue
-                | Self::Truth
-        )
-    }
-}
-
-/// Writes the figures into the pages that were asked for.
-fn written(arguments: &Arguments, origin: &Origin, figures: &[Figure]) -> Result<(), Error> {
-    let topic = arguments.topic;
-    let own = (arguments.write && topic.writes_its_page()).then(|| topic_page::path(&topic.name()));
-    let introduction = match topic {
-        Topic::Comparison => comparison::side_by_side(figures),
-        Topic::Generator => generator::INTRODUCTION.trim_end().to_owned(),
-        _ => String::new(),
+        Some((name, matches)) => Extent::from_arg_matches(matches)
+            .map_err(Error::from)
+            .and_then(|extent| measured(name, &extent)),
+        None => Ok(Vec::new()),
     };
-    let table = table(figures).to_string();
-    for path in own.iter().chain(&arguments.out) {
-        topic_page::write(path, origin, &introduction, &table)?;
+    match measured {
+        Ok(figures) => concluded(&figures),
+        Err(error) => failed(&error),
     }
-    Ok(())
 }
 
-/// Comparison of a small run with the committed page of its topic.
-fn compared(topic: Topic, figures: &[Figure]) -> Vec<Figure> {
-    let name = topic.name();
-    let renewed_by = match topic {
-        // Their pages are compared as a whole, in any version.
-        Topic::Measured | Topic::Paper | Topic::Catalogue => return Vec::new(),
-        Topic::Truth => format!("cargo figures {name} --write"),
-        _ if topic.writes_its_page() => format!("cargo figures {name} --write"),
-        _ => format!("cargo figures {name} --out docs/figures/{name}.md"),
-    };
-    topic_page::compared(&name, &renewed_by, figures)
+/// The figures of a topic.
+fn measured(name: &str, extent: &Extent) -> Result<Vec<Figure>, Error> {
+    let mut topics = TOPICS.iter();
+    let topic = topics
+        .find(|topic| topic.name == name)
+        .ok_or("no topic of this name")?;
+    let context = extent.context();
+    let mut figures = topic.figures(&context, &extent.parts, |_, _| Ok(()))?;
+    if let Some(path) = &extent.out {
+        written(path, topic, extent, &figures)?;
+    }
+    if extent.small {
+        figures.extend(pages::compared(topic.name, &figures));
+    }
+    Ok(figures)
+}
+
+/// The small version of every topic, each beside its page.
+fn check() -> Result<Vec<Figure>, Error> {
+    let context = Context::new(Size::Small, Seeds::Development);
+    let mut all = Vec::new();
+    for topic in &TOPICS {
+        let begin = std::time::Instant::now();
+        let figures = topic.figures(&context, &[], |part, _| {
+            eprintln!(
+                "{} {}: {:.0} s",
+                topic.name,
+                part.name,
+                begin.elapsed().as_secs_f64()
+            );
+            Ok(())
+        })?;
+        all.extend(pages::compared(topic.name, &figures));
+        all.extend(figures);
+    }
+    Ok(all)
+}
+
+/// Writes a table into a file of the user.
+fn written(path: &Path, topic: &Topic, extent: &Extent, figures: &[Figure]) -> Result<(), Error> {
+    let parts: String = extent
+        .parts
+        .iter()
+        .map(|part| format!(" --part {part}"))
+        .collect();
+    let small = if extent.small { " --small" } else { "" };
+    let records = extent
+        .records
+        .map_or_else(String::new, |most| format!(" --records {most}"));
+    let name = topic.name;
+    let page = format!(
+        "# Figures: {name}\n\nPrinted by `cargo figures {name}{parts}{small}{records}`.\n\n{}\n",
+        table_of(figures)
+    );
+    Ok(gyrocal_record::write_whole(path, page.as_bytes())?)
+}
+
+/// Prints the figures; a failure if one does not hold.
+fn concluded(figures: &[Figure]) -> ExitCode {
+    println!("{}", table_of(figures));
+    let failed = figures
+        .iter()
+        .filter(|figure| figure.holds == Some(false))
+        .count();
+    if failed == 0 {
+        return ExitCode::SUCCESS;
+    }
+    eprintln!("{failed} of {} figures do not hold", figures.len());
+    ExitCode::FAILURE
+}
+
+fn failed(error: &Error) -> ExitCode {
+    eprintln!("figures could not be measured: {error}");
+    ExitCode::FAILURE
 }

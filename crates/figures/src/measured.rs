@@ -36,7 +36,7 @@ pub(crate) fn figures(write: bool) -> Result<Vec<Figure>, Error> {
     } else {
         figures.push(Figure::truth(
             "docs/measured-data.md is what is measured",
-            page::is_committed(&path, &text, "measured")?,
+            page::is_committed(&path, &text, "instruments --part measured")?,
         ));
     }
     Ok(figures)

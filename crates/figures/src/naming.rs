@@ -2,9 +2,9 @@
 //! false alarms. The cells are those of `gyrocal characterise`, which adds baseline methods.
 
 mod cost;
-mod plan;
+pub(crate) mod plan;
 
-use gyrocal_evaluation::{Characteristic, PopulationCell, Target, cell_campaign, cell_report};
+use gyrocal_evaluation::{Characteristic, PopulationCell, cell_campaign, cell_report};
 
 use crate::error::Error;
 use crate::figure::Figure;
@@ -41,7 +41,6 @@ pub(crate) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
         let all = report.characteristics.iter();
         figures.extend(all.map(|characteristic| figure(&report.title, characteristic)));
     }
-    figures.extend(plan::figures(small)?);
     figures.extend(cost::figures(small)?);
     Ok(figures)
 }
@@ -49,11 +48,9 @@ pub(crate) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
 fn figure(title: &str, of: &Characteristic) -> Figure {
     Figure {
         name: format!("{title}: {}", of.figure),
-        target: match of.target {
-            Some(Target::AtLeast(least)) => format!(">= {least}"),
-            Some(Target::AtMost(most)) => format!("<= {most}"),
-            None => String::new(),
-        },
+        target: of
+            .target
+            .map_or_else(String::new, |target| target.to_string()),
         measured: match (of.measured, of.interval) {
             (Some(value), Some([low, high])) => format!("{value:.3} ({low:.3} to {high:.3})"),
             (Some(value), None) => format!("{value:.3}"),
@@ -64,5 +61,6 @@ fn figure(title: &str, of: &Characteristic) -> Figure {
         holds: of.holds,
         too_few: of.too_few,
         share: of.share,
+        ..Figure::default()
     }
 }

@@ -10,7 +10,7 @@ use core::cell::Cell;
 /// Work of a search over that of one pass with all its signatures. A whole diagnosis of a sound record takes
 /// less than six passes. The search of one with causes of a hundred standard deviations beside walks would
 /// take sixty in the median. A hostile record is to take at most twenty times the work of a sound one, which
-/// `cargo figures truth` measures.
+/// `cargo figures diagnosis` measures.
 const PASSES: u64 = 44;
 
 /// Work before a search that counts for nothing: that of the first fits of nearly every record. What is more

@@ -6,7 +6,7 @@ use crate::bank::NominalEstimate;
 
 /// Deviance of the confidence set: hypotheses whose penalised statistics are within it of the named
 /// one belong to the set. Over simulated records with effects of five standard deviations the true
-/// one was within 2.8 in 95 %, and within 3.4 in 97 %; `cargo figures naming` measures the coverage.
+/// one was within 2.8 in 95 %, and within 3.4 in 97 %; `cargo figures diagnosis --part naming` measures the coverage.
 pub const CONFIDENCE_SET_DEVIANCE: f64 = 3.5;
 
 /// One estimated parameter of an effect.

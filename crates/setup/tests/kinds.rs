@@ -7,7 +7,7 @@ use gyrocal_testkit::broken_setups::{BREAKAGES, Breakage, Broken, sound};
 /// First of the seeds; each breakage has its own thousand.
 const FIRST_SEED: u64 = 2_100_000;
 
-/// Records of a breakage. `cargo figures truth` has more.
+/// Records of a breakage. `cargo figures diagnosis` has more.
 const RECORDS: u64 = 20;
 
 fn is_right(breakage: &Breakage, check: &SetupCheck) -> bool {

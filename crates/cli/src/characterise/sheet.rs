@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
-use gyrocal_evaluation::{CellReport, Characteristic, Target};
+use gyrocal_evaluation::{CellReport, Characteristic};
 use gyrocal_statistics::Proportion;
 
 use crate::tables::{right, table};
@@ -219,11 +219,9 @@ fn holds(figure: &Characteristic) -> &'static str {
 }
 
 pub(super) fn target(figure: &Characteristic) -> String {
-    match figure.target {
-        Some(Target::AtLeast(least)) => format!(">= {least}"),
-        Some(Target::AtMost(most)) => format!("<= {most}"),
-        None => String::new(),
-    }
+    figure
+        .target
+        .map_or_else(String::new, |target| target.to_string())
 }
 
 fn interval(figure: &Characteristic) -> String {

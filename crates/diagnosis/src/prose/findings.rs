@@ -125,7 +125,7 @@ pub(super) fn value(parameter: &Parameter) -> String {
     }
 }
 
-/// An estimated probability: `cargo figures truth --part outside` holds it within five points.
+/// An estimated probability: `cargo figures diagnosis --part outside` holds it within five points.
 pub(super) fn likely(probability: f64) -> String {
     match probability {
         high if high > 0.95 => "above 95 %".to_owned(),

@@ -1,6 +1,6 @@
 //! The noise audit over simulated records: the right finding, with its size, and nothing else.
 //!
-//! `cargo figures diagnosis-ground` measures the same over populations; here each fault has a few
+//! `cargo figures diagnosis --part ground` measures the same over populations; here each fault has a few
 //! records.
 #![allow(clippy::unwrap_used, clippy::expect_used)] // a test stops at what fails
 

@@ -1,5 +1,5 @@
 //! The signature of every effect of the catalogue against finite differences of the nonlinear
-//! simulation, which is written independently; `cargo figures diagnosis-ground` does the same
+//! simulation, which is written independently; `cargo figures diagnosis --part ground` does the same
 //! over more and longer records.
 #![allow(clippy::unwrap_used, clippy::expect_used)] // a test stops at what fails
 

@@ -131,7 +131,7 @@ pub(crate) fn write(root: &Path) -> Result<(), Error> {
         });
     }
     let renewed = Before {
-        commit: super::commit(root),
+        commit: crate::harness::pages::commit(root),
         diagnoses,
     };
     Ok(gyrocal_record::write_json(&path, &renewed)?)

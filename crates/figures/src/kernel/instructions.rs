@@ -2,7 +2,7 @@
 //! `factorised_steps` for information.
 //!
 //! The number belongs to a compiler version and a plain build; with another one the figure is
-//! printed and not judged. `cargo figures kernel --write` renews the committed numbers.
+//! printed and not judged. `cargo figures kernel --part filter --write` renews the committed numbers.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -48,8 +48,9 @@ pub(crate) fn figures() -> Result<Vec<Figure>, Error> {
         Ok(counted) => counted,
         Err(reason) => return Ok(vec![skipped(&reason)]),
     };
-    let text = std::fs::read_to_string(root().join(COMMITTED))
-        .map_err(|error| format!("{COMMITTED}: {error}; cargo figures kernel --write makes it"))?;
+    let text = std::fs::read_to_string(root().join(COMMITTED)).map_err(|error| {
+        format!("{COMMITTED}: {error}; cargo figures kernel --part filter --write makes it")
+    })?;
     let committed: Counts =
         toml::from_str(&text).map_err(|error| format!("{COMMITTED}: {error}"))?;
     let same = committed.rustc == counted.rustc && committed.target == counted.target;
@@ -66,8 +67,7 @@ pub(crate) fn figures() -> Result<Vec<Figure>, Error> {
             runs: 1,
             seeds: String::new(),
             holds: same.then(|| (measured / expected - 1.0).abs() <= TOLERANCE),
-            too_few: false,
-            share: None,
+            ..Figure::default()
         });
     }
     for ((rule, _), count) in RULES.iter().zip(factors) {
@@ -76,7 +76,7 @@ pub(crate) fn figures() -> Result<Vec<Figure>, Error> {
     }
     if !same {
         figures.push(skipped(&format!(
-            "they belong to {} on {}, this is {} on {}; `cargo figures kernel --write` renews them",
+            "they belong to {} on {}, this is {} on {}; `cargo figures kernel --part filter --write` renews them",
             committed.rustc, committed.target, counted.rustc, counted.target
         )));
     }
@@ -90,7 +90,7 @@ pub(crate) fn renewed() -> Result<Vec<Figure>, Error> {
     } = counted()??;
     let text = format!(
         "# Instructions of one filter step under callgrind, in a plain release build by this\n\
-         # compiler. `cargo figures kernel --write` renews them.\n{}",
+         # compiler. `cargo figures kernel --part filter --write` renews them.\n{}",
         toml::to_string(&counted)?
     );
     std::fs::write(root().join(COMMITTED), text)?;

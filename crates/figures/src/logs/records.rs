@@ -63,7 +63,7 @@ struct Named {
     oracle: Option<f64>,
 }
 
-pub(super) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
+pub(crate) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
     let small = extent.small;
     let mut figures = named(
         "two records, a term with d = 8 in each",

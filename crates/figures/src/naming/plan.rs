@@ -50,7 +50,7 @@ struct Sets {
 }
 
 /// All figures of planning.
-pub(super) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
+pub(crate) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
     let runs = if small {
         SMALL
     } else {

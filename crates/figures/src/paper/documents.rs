@@ -9,7 +9,7 @@ use super::curves::Named;
 use crate::page::{docs, is_committed};
 
 /// Command that renews them.
-const TOPIC: &str = "paper";
+const TOPIC: &str = "calibration --part paper";
 
 /// Width of the pictures as PNG, px.
 const PNG_WIDTH_PX: u32 = 1440;

@@ -148,7 +148,7 @@ const KINDS: [Cell; 8] = [
     },
 ];
 
-pub(super) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
+pub(crate) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
     let small = extent.small;
     let mut figures = Vec::new();
     let cells = CELLS.iter().chain(&KINDS);
@@ -354,7 +354,7 @@ mod tests {
     use gyrocal_diagnosis::set_coverage::SET_COVERAGE;
 
     use super::*;
-    use crate::topic_page;
+    use crate::harness::pages;
 
     /// The row of the page with the coverage of a kind.
     fn row_of(kind: EffectKind) -> String {
@@ -368,7 +368,7 @@ mod tests {
     #[test]
     #[allow(clippy::expect_used, clippy::unwrap_used)]
     fn stated_coverages_are_those_of_the_page() {
-        let page = std::fs::read_to_string(topic_page::path("truth")).unwrap();
+        let page = std::fs::read_to_string(pages::path("diagnosis")).unwrap();
         for (kind, stated) in SET_COVERAGE {
             let start = format!("| {} ", row_of(kind));
             let row = page.lines().find(|line| line.starts_with(&start));

@@ -76,7 +76,7 @@ fn of_a_sound_row(rows: usize) -> Result<[f64; 2], Error> {
     ])
 }
 
-pub(super) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
+pub(crate) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
     let records = if small {
         SMALL_KINDS.len() as u64
     } else {

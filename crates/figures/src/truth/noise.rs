@@ -5,16 +5,15 @@ use gyrocal::EFFECTS;
 use gyrocal::effect::EffectKind;
 use gyrocal_diagnosis::{DiagnoseOptions, DiagnosisResult, diagnose};
 use gyrocal_evaluation::{EvaluationError, scenario};
-use gyrocal_statistics::Proportion;
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{Hidden, Scenario, Simulation, Term, simulate, simulate_with};
 use serde::{Deserialize, Serialize};
 
-use super::coverage::of_intervals;
-use super::{Extent, interval_s};
+use super::interval_s;
 use crate::error::Error;
 use crate::figure::Figure;
-use crate::resumable;
+use crate::harness::{COVERAGE, COVERAGE_REASON, Context, Population, Row};
+use crate::topics::{DIAGNOSIS, of};
 
 /// Purposes of the streams of draws: of the noise levels, and of the series.
 const LEVELS: u64 = 42;
@@ -45,8 +44,8 @@ enum Noise {
     Clean,
 }
 
-/// A row of a table.
-struct Row {
+/// A population of records with noise.
+struct Noises {
     noise: Noise,
     cell: &'static str,
     name: &'static str,
@@ -54,12 +53,19 @@ struct Row {
     records: u64,
     /// Number of records in the small version; zero leaves the row out.
     small: u64,
-    /// Largest share of false records.
+    /// Largest share of false records at the upper 95 % bound, and why.
     limit: f64,
+    reason: &'static str,
 }
 
-const WALKING: [Row; 3] = [
-    Row {
+/// Reasons of the limits.
+const LEVEL_REASON: &str =
+    "the level is 1 %: twenty of 2000 are due, and 27 within the bound; of 1000 ten and 13";
+const WALKING_REASON: &str =
+    "the level of 1 % and one more for walks that look like causes: 21 of 1000 within the bound";
+
+const WALKING: [Noises; 3] = [
+    Noises {
         noise: Noise::Walks(1),
         cell: "walk-1",
         name: "random walk on one gyro: a deterministic cause named without a walk of its gyro",
@@ -67,8 +73,9 @@ const WALKING: [Row; 3] = [
         records: 1000,
         small: 4,
         limit: 0.03,
+        reason: WALKING_REASON,
     },
-    Row {
+    Noises {
         noise: Noise::Walks(2),
         cell: "walk-2",
         name: "random walks on two gyros: the same",
@@ -76,8 +83,9 @@ const WALKING: [Row; 3] = [
         records: 1000,
         small: 0,
         limit: 0.03,
+        reason: WALKING_REASON,
     },
-    Row {
+    Noises {
         noise: Noise::Walks(3),
         cell: "walk-3",
         name: "random walks on three gyros: the same",
@@ -85,10 +93,11 @@ const WALKING: [Row; 3] = [
         records: 1000,
         small: 6,
         limit: 0.03,
+        reason: WALKING_REASON,
     },
 ];
 
-const FLICKERING: Row = Row {
+const FLICKERING: Noises = Noises {
     noise: Noise::Flicker,
     cell: "flicker",
     name: "flicker on three gyros: a physical cause named without a noise process in its set",
@@ -96,9 +105,10 @@ const FLICKERING: Row = Row {
     records: 1000,
     small: 4,
     limit: 0.02,
+    reason: LEVEL_REASON,
 };
 
-const CLEAN: Row = Row {
+const CLEAN: Noises = Noises {
     noise: Noise::Clean,
     cell: "clean-noise",
     name: "clean, noise declared 0.5 to 2 times, AR(1) to 0.3, t₄: physical cause or unexplained",
@@ -106,6 +116,7 @@ const CLEAN: Row = Row {
     records: 2000,
     small: 16,
     limit: 0.02,
+    reason: LEVEL_REASON,
 };
 
 /// Result for one record.
@@ -119,52 +130,43 @@ struct Noisy {
     covered: Vec<bool>,
 }
 
-pub(super) fn of_walks(extent: Extent) -> Result<Vec<Figure>, Error> {
-    let rows = WALKING.iter().filter(|row| row.small > 0 || !extent.small);
-    let all: Result<Vec<Vec<Figure>>, Error> = rows.map(|row| of_row(row, extent)).collect();
+pub(crate) fn of_walks(context: &Context) -> Result<Vec<Figure>, Error> {
+    let all: Result<Vec<Vec<Figure>>, Error> =
+        WALKING.iter().map(|row| of_row(row, context)).collect();
     Ok(all?.into_iter().flatten().collect())
 }
 
-pub(super) fn of_flicker(extent: Extent) -> Result<Vec<Figure>, Error> {
-    of_row(&FLICKERING, extent)
+pub(crate) fn of_flicker(context: &Context) -> Result<Vec<Figure>, Error> {
+    of_row(&FLICKERING, context)
 }
 
-pub(super) fn of_clean(extent: Extent) -> Result<Vec<Figure>, Error> {
-    of_row(&CLEAN, extent)
+pub(crate) fn of_clean(context: &Context) -> Result<Vec<Figure>, Error> {
+    of_row(&CLEAN, context)
 }
 
-fn of_row(row: &Row, extent: Extent) -> Result<Vec<Figure>, Error> {
-    let small = extent.small;
-    let count = extent.records(row.records, row.small);
-    let seeds = row.first_seed..row.first_seed + count;
-    let campaign = resumable::campaign("truth", row.cell, seeds.clone(), small)?;
-    let outcome = campaign.run(|seed| record(row.noise, seed), |_| ())?;
-    let with_unexplained = matches!(row.noise, Noise::Clean);
-    let wrong =
-        Proportion::of(outcome.successes().map(|(_, record)| {
-            !record.causes.is_empty() || (with_unexplained && record.unexplained)
-        }));
-    let bound = wrong.upper_bound(0.95);
-    let mut figure = Figure::within(row.name, [0.0, row.limit], bound).of_share(wrong);
-    figure.target = format!("<= {} (upper 95 % bound)", row.limit);
-    figure.measured = format!("{:.3}, bound {bound:.3}", wrong.share());
-    if small {
-        figure = figure.judged(wrong.at_most(row.limit));
-    }
-    let seeds = format!("{seeds:?}");
-    let mut figures = vec![figure.over(outcome.successes().count(), seeds.as_str())];
-    if matches!(row.noise, Noise::Walks(_)) {
-        let all = outcome
-            .successes()
-            .flat_map(|(_, record)| record.covered.iter());
-        let all: Vec<bool> = all.copied().collect();
+fn of_row(row: &Noises, context: &Context) -> Result<Vec<Figure>, Error> {
+    let noise = row.noise;
+    let population = Population {
+        name: row.cell.to_owned(),
+        first: row.first_seed,
+        full: row.records,
+        small: row.small,
+        sources: of(DIAGNOSIS, &[file!()]),
+        job: Box::new(move |seed| Ok(record(noise, seed)?)),
+    };
+    let is_wrong = move |one: &Noisy| {
+        !one.causes.is_empty() || (matches!(noise, Noise::Clean) && one.unexplained)
+    };
+    let mut rows = vec![Row::bound(row.name, is_wrong).at_most(row.limit, row.reason)];
+    if matches!(noise, Noise::Walks(_)) {
         let name = format!(
             "{}: coverage of the 95 % interval of the size of a named walk",
             row.cell
         );
-        figures.push(of_intervals(&name, &all, &seeds, small));
+        let held = |one: &Noisy| one.covered.clone();
+        rows.push(Row::each(name, held).between(COVERAGE, COVERAGE_REASON));
     }
-    Ok(figures)
+    context.measure(&population, &rows)
 }
 
 fn record(noise: Noise, seed: u64) -> Result<Noisy, EvaluationError> {

@@ -93,7 +93,7 @@ impl Outside {
     }
 }
 
-pub(super) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
+pub(crate) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
     let small = extent.small;
     let count = extent.records(RECORDS, SMALL);
     let cell = |place: usize| -> Result<Vec<Outside>, Error> {

@@ -43,7 +43,7 @@ const TIMED_RUNS: usize = 9;
 const DAYS: f64 = 3.0;
 const MORE: f64 = 10.0;
 
-pub(super) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
+pub(crate) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
     let mut figures = broken(small)?;
     figures.extend(sound(small)?);
     figures.extend(undecided(small)?);

@@ -50,7 +50,7 @@ struct Shaped {
     estimate: Option<f64>,
 }
 
-pub(super) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
+pub(crate) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
     let small = extent.small;
     let count = extent.records(SEEDS[1], SMALL);
     let seeds = SEEDS[0]..SEEDS[0] + count;

@@ -46,7 +46,7 @@ struct Mixed {
     covered: Vec<bool>,
 }
 
-pub(super) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
+pub(crate) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
     let seeds = FIRST_SEED..FIRST_SEED + extent.records(RECORDS, SMALL);
     let campaign = resumable::campaign("truth", "together", seeds.clone(), extent.small)?;
     let outcome = campaign.run(record, |_| ())?;

@@ -66,7 +66,7 @@ pub(super) fn written(directory: &Path, python: &Path) -> Result<PathBuf, Error>
 pub(super) fn built(source: &Path, form: Form) -> Result<Contest, Error> {
     let text = std::fs::read_to_string(source.join("src/ours.json"))?;
     let header = Header {
-        rebuild_command: "cargo figures generator".into(),
+        rebuild_command: "cargo figures kernel --part generator".into(),
         source: "peers.py".into(),
         fingerprint: "none".into(),
     };

@@ -1,13 +1,15 @@
-//! Pages of figures, `docs/figures/TOPIC.md`: written by the full version of a topic or, a section each, of
-//! its parts, and compared with by the small one.
+//! Pages of figures, `docs/figures/TOPIC.md`: a section for each part, written by the night of figures and compared
+//! with by the small version.
 
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use gyrocal_statistics::Proportion;
+use gyrocal_testkit::{timing, workspace};
 
+use super::topic::Part;
 use crate::error::Error;
 use crate::figure::Figure;
-use crate::{house, page};
 
 /// Confidence of the intervals of a share, here and on the page, that must overlap: a hundred rows are
 /// compared at once, and none is to differ by chance.
@@ -18,88 +20,41 @@ const HEADER: [&str; 3] = ["figure", "target", "measured"];
 
 /// Path of the page of a topic.
 pub(crate) fn path(topic: &str) -> PathBuf {
-    page::docs()
-        .join("figures")
-        .join(topic)
-        .with_extension("md")
+    let page = workspace().join("docs/figures").join(topic);
+    page.with_extension("md")
 }
 
-/// How a table was made.
-#[derive(Clone, Debug)]
-pub(crate) struct Origin {
-    pub(crate) topic: String,
-    /// Options of the command beside the topic.
-    extent: String,
-    commit: String,
+/// The section of a part: how it was measured, and its table.
+pub(crate) fn section(part: &Part, command: &str, table: &str) -> Result<String, Error> {
+    let (commit, sources) = (commit(&workspace()), part.sources.hash()?);
+    let processor = timing::processor();
+    let about = part.about;
+    Ok(format!(
+        "{about}\n\nPrinted by `{command}` of commit {commit}, sources {sources}, on {processor}. Times and \
+         ratios of times are those of that machine, and instruction counts those of its compiler. All else \
+         differs by rounding at most: where the target fuses multiplication and addition, last bits differ.\n\n\
+         {table}\n"
+    ))
 }
 
-impl Origin {
-    /// Of a command of the present commit. What is written into the tree later changes it no more.
-    pub(crate) fn now(topic: &str, extent: &str) -> Self {
-        Self {
-            topic: topic.to_owned(),
-            extent: extent.to_owned(),
-            commit: house::commit(&gyrocal_testkit::workspace()),
-        }
-    }
-
-    /// The same origin of one part of the topic.
-    pub(crate) fn of_part(&self, part: &str) -> Self {
-        let option = format!(" --part {part}");
-        let others = self
-            .extent
-            .split(" --part ")
-            .enumerate()
-            .map(|(place, text)| {
-                // The first is before any part; each other begins with the name of one.
-                match place {
-                    0 => text,
-                    _ => text.find(' ').map_or("", |end| &text[end..]),
-                }
-            });
-        Self {
-            extent: option + &others.collect::<String>(),
-            ..self.clone()
-        }
-    }
-
-    fn sentence(&self) -> String {
-        let processor = gyrocal_testkit::timing::processor();
-        let Self {
-            topic,
-            extent,
-            commit,
-        } = self;
-        format!(
-            "Printed by `cargo figures {topic}{extent}` of commit {commit} on {processor}. Times and \
-             ratios of times are those of that machine, and instruction counts those of its compiler. \
-             All else differs by rounding at most: where the target fuses multiplication and addition, \
-             last bits differ."
-        )
-    }
-}
-
-/// Writes the printed table as a page of the documentation, below an introduction.
-///
-/// # Errors
-/// If the file cannot be written.
-pub(crate) fn write(
-    path: &Path,
-    origin: &Origin,
-    introduction: &str,
-    table: &str,
-) -> Result<(), Error> {
-    let introduction = match introduction {
-        "" => String::new(),
-        text => format!("{text}\n\n"),
+/// The commit of a workspace, as far as `git` tells it; `-dirty` if files differ from it but for the pages of
+/// figures, which one part after the other writes.
+pub(crate) fn commit(root: &Path) -> String {
+    let git = |arguments: &[&str]| {
+        let mut command = Command::new("git");
+        let output = command.arg("-C").arg(root).args(arguments).output().ok()?;
+        let text = String::from_utf8_lossy(&output.stdout).trim().to_owned();
+        output.status.success().then_some(text)
     };
-    let sentence = origin.sentence();
-    let page = format!(
-        "# Figures: {}\n\n{sentence}\n\n{introduction}{table}\n",
-        origin.topic
-    );
-    gyrocal_record::write_whole(path, page.as_bytes())?;
-    Ok(())
+    let Some(commit) = git(&["describe", "--always", "--exclude=*"]) else {
+        return "unknown".to_owned();
+    };
+    let tracked = ["status", "--porcelain", "--untracked-files=no"];
+    let but_pages = ["--", ":/", ":(top,exclude)docs/figures"];
+    match git(&[tracked.as_slice(), &but_pages].concat()) {
+        Some(changes) if changes.is_empty() => commit,
+        _ => format!("{commit}-dirty"),
+    }
 }
 
 /// Renews the section of a part in the page of its topic. The other sections keep what they are: each says
@@ -107,26 +62,25 @@ pub(crate) fn write(
 ///
 /// # Errors
 /// If the file cannot be read or written.
-pub(crate) fn write_part(
-    path: &Path,
-    origin: &Origin,
+pub(crate) fn write_section(
+    topic: &str,
     part: &str,
-    parts: &[String],
-    table: &str,
+    parts: &[&str],
+    body: &str,
 ) -> Result<(), Error> {
-    let page = match std::fs::read_to_string(path) {
+    let path = path(topic);
+    let page = match std::fs::read_to_string(&path) {
         Ok(page) => page,
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => String::new(),
         Err(error) => return Err(format!("{}: {error}", path.display()).into()),
     };
-    let body = format!("{}\n\n{table}\n", origin.of_part(part).sentence());
-    let page = with_section(&page, &origin.topic, part, parts, &body);
-    gyrocal_record::write_whole(path, page.as_bytes())?;
+    let page = with_section(&page, topic, part, parts, body);
+    gyrocal_record::write_whole(&path, page.as_bytes())?;
     Ok(())
 }
 
 /// A page with the section of a part replaced or added.
-fn with_section(page: &str, topic: &str, part: &str, parts: &[String], body: &str) -> String {
+fn with_section(page: &str, topic: &str, part: &str, parts: &[&str], body: &str) -> String {
     let sections = page.split("\n## ").skip(1);
     let sections: Vec<(&str, &str)> = sections
         .filter_map(|section| section.split_once("\n\n"))
@@ -135,7 +89,7 @@ fn with_section(page: &str, topic: &str, part: &str, parts: &[String], body: &st
     for name in parts {
         let kept = sections.iter().find(|(heading, _)| heading == name);
         let body = match kept {
-            _ if name == part => body,
+            _ if *name == part => body,
             Some((_, body)) => body.trim_end(),
             None => continue,
         };
@@ -146,8 +100,9 @@ fn with_section(page: &str, topic: &str, part: &str, parts: &[String], body: &st
 
 /// Comparison of the figures of a small run with the committed page of the topic: each share of this run
 /// must be consistent with that of the page. Rows that the page lacks are told as a note.
-pub(crate) fn compared(topic: &str, renewed_by: &str, figures: &[Figure]) -> Vec<Figure> {
+pub(crate) fn compared(topic: &str, figures: &[Figure]) -> Vec<Figure> {
     let name = format!("docs/figures/{topic}.md");
+    let renewed_by = &format!("cargo figures night --topic {topic}");
     match std::fs::read_to_string(path(topic)) {
         Ok(text) => compared_with(&name, renewed_by, &rows(&text), figures),
         Err(_) => vec![Figure::note(
@@ -268,7 +223,7 @@ fn rows(page: &str) -> Vec<Row> {
 #[allow(clippy::expect_used, reason = "a failure here is a failed test")]
 mod tests {
     use super::*;
-    use crate::figure::table;
+    use crate::figure::table_of;
 
     fn share(name: &str, hits: u64, trials: u64) -> Figure {
         Figure::note_share(name, Proportion { hits, trials }, "0..9")
@@ -282,7 +237,7 @@ mod tests {
         ];
         rows(&format!(
             "# Figures\n\n| a | b |\n|---|---|\n| 1 | 2 |\n\n{}\n",
-            table(&figures)
+            table_of(&figures)
         ))
     }
 
@@ -348,14 +303,14 @@ mod tests {
             result[1].measured,
             "page lacks this row: `new`: measure it again with `cargo figures x --write`"
         );
-        let none = compared("no-such-topic", "cargo figures no-such-topic --write", &[]);
+        let none = compared("no-such-topic", &[]);
         assert!(none[0].holds.is_none() && none[0].measured.contains("there is none"));
     }
 
     #[test]
     fn a_section_is_renewed_in_its_place() {
-        let parts = ["one", "two", "three"].map(str::to_owned);
-        let body = |word: &str| format!("{word}\n\n{}\n", table(&[share(word, 1, 2)]));
+        let parts = ["one", "two", "three"];
+        let body = |word: &str| format!("{word}\n\n{}\n", table_of(&[share(word, 1, 2)]));
         let page = with_section("", "x", "three", &parts, &body("c"));
         let page = with_section(&page, "x", "one", &parts, &body("a"));
         let renewed = with_section(&page, "x", "three", &parts, &body("d"));
@@ -365,28 +320,11 @@ mod tests {
         assert_eq!(renewed.matches("\n## ").count(), 2);
     }
 
-    #[test]
-    fn a_part_has_its_own_command() {
-        let origin = |extent: &str| Origin {
-            topic: "x".to_owned(),
-            extent: extent.to_owned(),
-            commit: "c0".to_owned(),
-        };
-        for (given, own) in [
-            ("", " --part two"),
-            (" --part one --part two", " --part two"),
-            (" --part one --records 7", " --part two --records 7"),
-            (" --records 7", " --part two --records 7"),
-        ] {
-            assert_eq!(origin(given).of_part("two").extent, own, "{given}");
-        }
-    }
-
     /// Each committed page names its command and the commit that it was measured at, in every section, and
     /// has figures with unique names.
     #[test]
     fn committed_pages_name_their_commit_and_can_be_read() {
-        let pages = std::fs::read_dir(page::docs().join("figures")).expect("it is committed");
+        let pages = std::fs::read_dir(workspace().join("docs/figures")).expect("it is committed");
         for page in pages {
             let path = page.expect("a file").path();
             let text = std::fs::read_to_string(&path).expect("a page");
@@ -394,8 +332,7 @@ mod tests {
                 .file_stem()
                 .and_then(|stem| stem.to_str())
                 .expect("a name");
-            let printed_by = format!("Printed by `cargo figures {topic}");
-            let origins = text.split(&printed_by);
+            let origins = text.split("Printed by `cargo figures ");
             let commits: Vec<usize> = origins
                 .skip(1)
                 .map(|origin| {

@@ -1,0 +1,2 @@
+//! Nothing: what counts is the build of its dependencies.
+fn main() {}

@@ -1,0 +1,442 @@
+//! Statistics over the records of a population, and their judgement against targets.
+//!
+//! A rate is judged by its 95 % bound: it misses its target where the exact one-sided 95 % bound excludes it. So a
+//! program whose true rate is that of the target passes in nineteen of twenty populations, whatever their size,
+//! where a comparison of the measured rate itself would fail every second one. A population smaller than the target
+//! asks for misses it at 99.9 % only, as tens of targets are judged at once, and meets it if the other 95 % bound
+//! does; between these it is too small to tell.
+
+use gyrocal_statistics::{
+    Judgement, NORMAL_97_5, Proportion, mean, median, quantile, standard_error,
+};
+use serde::{Deserialize, Serialize};
+
+/// Confidence of reported intervals, two-sided, and of bounds, one-sided.
+const CONFIDENCE: f64 = 0.95;
+
+/// One-sided points of the normal distribution: 95 % and 99.9 %.
+const BOUND_SIGMAS: f64 = 1.644_853_626_951_472_2;
+const MISSED_SIGMAS: f64 = 3.090_232_306_167_813;
+
+/// One-sided confidence at which a small population misses its target.
+const MISSED: f64 = 0.999;
+
+/// Target of a figure.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum Target {
+    /// At least this.
+    AtLeast(f64),
+    /// At most this.
+    AtMost(f64),
+    /// Between these, both included.
+    Between([f64; 2]),
+}
+
+impl Target {
+    /// The least and the largest value that meet it.
+    #[must_use]
+    pub fn range(self) -> [f64; 2] {
+        match self {
+            Self::AtLeast(least) => [least, f64::INFINITY],
+            Self::AtMost(most) => [f64::NEG_INFINITY, most],
+            Self::Between(range) => range,
+        }
+    }
+}
+
+impl core::fmt::Display for Target {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::AtLeast(least) => write!(f, ">= {least}"),
+            Self::AtMost(most) => write!(f, "<= {most}"),
+            Self::Between([least, most]) => write!(f, "{least} to {most}"),
+        }
+    }
+}
+
+/// A statistic over the records of a population.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Statistic {
+    /// A share of the records.
+    Share(Proportion),
+    /// The upper 95 % bound of a share.
+    Bound(Proportion),
+    /// The unweighted average of shares.
+    Average(Vec<Proportion>),
+    /// The least of several shares; each has a part of the records only.
+    Least(Vec<Proportion>),
+    /// The mean of one number a record.
+    Mean(Vec<f64>),
+    /// The median of one number a record.
+    Median(Vec<f64>),
+    /// The ratio of the means of two numbers a record.
+    Ratio(Vec<[f64; 2]>),
+    /// A number without scatter, and its number of runs.
+    Value(f64, u64),
+}
+
+/// What a statistic states of the true value.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Range {
+    /// One-sided bounds of 95 %.
+    bounds: [f64; 2],
+    /// One-sided bounds of 99.9 %.
+    far: [f64; 2],
+}
+
+impl Range {
+    fn of(bounds: impl Fn(f64, f64) -> [f64; 2]) -> Self {
+        Self {
+            bounds: bounds(CONFIDENCE, BOUND_SIGMAS),
+            far: bounds(MISSED, MISSED_SIGMAS),
+        }
+    }
+
+    fn exact(share: &Proportion) -> Self {
+        Self::of(|confidence, _| [share.lower_bound(confidence), share.upper_bound(confidence)])
+    }
+
+    fn normal(value: f64, sigma: f64) -> Self {
+        Self::of(|_, sigmas| [value - sigmas * sigma, value + sigmas * sigma])
+    }
+}
+
+impl Statistic {
+    /// Share of the records for which `of` is true, among those for which it is anything.
+    pub fn share<R>(records: &[R], of: impl Fn(&R) -> Option<bool>) -> Self {
+        Self::Share(Proportion::of(records.iter().filter_map(of)))
+    }
+
+    /// The measured value; NaN without records.
+    #[must_use]
+    pub fn value(&self) -> f64 {
+        match self {
+            Self::Share(share) => share.share(),
+            Self::Bound(share) => share.upper_bound(CONFIDENCE),
+            Self::Average(all) => mean(all.iter().map(Proportion::share)),
+            Self::Least(all) => least(all).map_or(f64::NAN, |least| least.share()),
+            Self::Mean(values) => mean(values),
+            Self::Median(values) => median(values),
+            Self::Ratio(pairs) => mean(column(pairs, 0)) / mean(column(pairs, 1)),
+            Self::Value(value, _) => *value,
+        }
+    }
+
+    /// Its two-sided 95 % interval: that of Clopper and Pearson for a share, a normal one for an average of
+    /// shares; `None` for other statistics.
+    #[must_use]
+    pub fn interval(&self) -> Option<[f64; 2]> {
+        match self {
+            Self::Share(share) => Some(share.interval(CONFIDENCE)),
+            Self::Least(all) => Some(least(all)?.interval(CONFIDENCE)),
+            Self::Average(all) => {
+                let sigma = sigma_of_average(all);
+                Some(
+                    [-NORMAL_97_5, NORMAL_97_5].map(|z| (self.value() + z * sigma).clamp(0.0, 1.0)),
+                )
+            }
+            _ => None,
+        }
+    }
+
+    /// Number of records that it is measured on.
+    #[must_use]
+    pub fn runs(&self) -> u64 {
+        match self {
+            Self::Share(share) | Self::Bound(share) => share.trials,
+            Self::Average(all) => all.iter().map(|share| share.trials).sum(),
+            Self::Least(all) => least(all).map_or(0, |least| least.trials),
+            Self::Mean(values) | Self::Median(values) => values.len() as u64,
+            Self::Ratio(pairs) => pairs.len() as u64,
+            Self::Value(_, runs) => *runs,
+        }
+    }
+
+    /// The share that it is, or that its bound is of.
+    #[must_use]
+    pub fn proportion(&self) -> Option<Proportion> {
+        match self {
+            Self::Share(share) | Self::Bound(share) => Some(*share),
+            Self::Least(all) => least(all).copied(),
+            _ => None,
+        }
+    }
+
+    /// Judgement against a target by a population as large as the target asks for (`full`), or by a smaller one.
+    #[must_use]
+    pub fn judged(&self, target: Target, full: bool) -> Judgement {
+        match self {
+            Self::Value(value, _) => {
+                let [least, most] = target.range();
+                let met = least <= *value && *value <= most;
+                Judgement::of(met, !met)
+            }
+            // The bound itself is to meet the target.
+            Self::Bound(share) => match (target, full) {
+                (Target::AtMost(most), false) => share.at_most(most),
+                _ => {
+                    let met = self.value() <= target.range()[1];
+                    Judgement::of(met, !met)
+                }
+            },
+            Self::Least(all) => {
+                // In a full population, too, a part of the records may be too few to tell.
+                let of = |share: &Proportion| Range::exact(share);
+                let [least, _] = target.range();
+                let met = all.iter().all(|share| of(share).bounds[0] >= least);
+                let missed = |share: &Proportion| match full {
+                    true => of(share).bounds[1] < least,
+                    false => of(share).far[1] < least,
+                };
+                Judgement::of(met, all.iter().any(missed))
+            }
+            Self::Ratio(pairs) => self.ratio_judged(pairs, target, full),
+            Self::Share(share) if share.trials > 0 => judged(Range::exact(share), target, full),
+            Self::Average(all) => judged(
+                Range::normal(self.value(), sigma_of_average(all)),
+                target,
+                full,
+            ),
+            // One record or none has no standard error, and shows nothing.
+            Self::Mean(values) if values.len() > 1 => judged(
+                Range::normal(self.value(), standard_error(values)),
+                target,
+                full,
+            ),
+            Self::Median(values) if values.len() > 1 => judged(of_median(values), target, full),
+            Self::Share(_) | Self::Mean(_) | Self::Median(_) => Judgement::TooFew,
+        }
+    }
+
+    /// The mean of one number less the limit times the mean of the other is normal over tens of records.
+    fn ratio_judged(&self, pairs: &[[f64; 2]], target: Target, full: bool) -> Judgement {
+        if pairs.len() < 2 {
+            return Judgement::TooFew;
+        }
+        let [least, most] = target.range();
+        let side = |limit: f64, sign: f64| {
+            let excess = pairs.iter().map(|pair| sign * (pair[0] - limit * pair[1]));
+            let excess: Vec<f64> = excess.collect();
+            let range = Range::normal(mean(&excess), standard_error(&excess));
+            judged(range, Target::AtMost(0.0), full)
+        };
+        let sides = [(least, -1.0), (most, 1.0)].into_iter();
+        let judgements: Vec<Judgement> = sides
+            .filter(|(limit, _)| limit.is_finite())
+            .map(|(limit, sign)| side(limit, sign))
+            .collect();
+        Judgement::of(
+            judgements.iter().all(|one| *one == Judgement::Met),
+            judgements.contains(&Judgement::Missed),
+        )
+    }
+}
+
+/// A range against a target.
+fn judged(range: Range, target: Target, full: bool) -> Judgement {
+    let [least, most] = target.range();
+    let excluded = |[low, high]: [f64; 2]| high < least || low > most;
+    if full {
+        let missed = excluded(range.bounds);
+        return Judgement::of(!missed, missed);
+    }
+    let [low, high] = range.bounds;
+    Judgement::of(least <= low && high <= most, excluded(range.far))
+}
+
+/// Bounds of a median by the order statistics of a sign test.
+fn of_median(values: &[f64]) -> Range {
+    let count = values.len() as f64;
+    Range::of(|_, sigmas| {
+        // Number of values below the median: normal with this share of scatter.
+        let half_width = 0.5 * sigmas / count.sqrt();
+        [0.5 - half_width, 0.5 + half_width].map(|share| quantile(values, share.clamp(0.0, 1.0)))
+    })
+}
+
+fn least(all: &[Proportion]) -> Option<&Proportion> {
+    all.iter()
+        .min_by(|one, other| one.share().total_cmp(&other.share()))
+}
+
+fn sigma_of_average(all: &[Proportion]) -> f64 {
+    let variance: f64 = all.iter().map(Proportion::variance).sum();
+    variance.sqrt() / all.len() as f64
+}
+
+fn column(pairs: &[[f64; 2]], which: usize) -> Vec<f64> {
+    pairs.iter().map(|pair| pair[which]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(hits: u64, trials: u64) -> Proportion {
+        Proportion { hits, trials }
+    }
+
+    fn holds(statistic: &Statistic, target: Target, full: bool) -> Option<bool> {
+        statistic.judged(target, full).holds()
+    }
+
+    /// Share of populations that pass, by the binomial distribution.
+    fn passing(rate: f64, trials: u64, passes: impl Fn(Proportion) -> bool) -> f64 {
+        let (odds, mut term) = (rate / (1.0 - rate), (1.0 - rate).powi(trials as i32));
+        let mut passing = 0.0;
+        for hits in 0..=trials {
+            if passes(of(hits, trials)) {
+                passing += term;
+            }
+            term *= odds * (trials - hits) as f64 / (hits + 1) as f64;
+        }
+        passing
+    }
+
+    #[test]
+    fn a_program_as_good_as_the_target_passes_in_nineteen_of_twenty_populations() {
+        for (rate, trials) in [
+            (0.95, 300),
+            (0.95, 1000),
+            (0.01, 300),
+            (0.01, 2000),
+            (0.5, 60),
+        ] {
+            for target in [Target::AtLeast(rate), Target::AtMost(rate)] {
+                let met = |share| holds(&Statistic::Share(share), target, true) == Some(true);
+                let passing = passing(rate, trials, met);
+                // Exact bounds hold with at least their confidence; whole numbers give some more.
+                assert!(
+                    (0.95..0.99).contains(&passing),
+                    "{target}, {trials}: {passing}"
+                );
+            }
+            // One that is clearly worse fails.
+            let target = Target::AtMost(rate);
+            let met = |share| holds(&Statistic::Share(share), target, true) == Some(true);
+            let worse = rate + 5.0 * (rate * (1.0 - rate) / trials as f64).sqrt();
+            assert!(
+                worse >= 1.0 || passing(worse, trials, met) < 0.01,
+                "{target}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_small_population_may_be_too_small_to_tell() {
+        let least = |hits, trials| {
+            holds(
+                &Statistic::Share(of(hits, trials)),
+                Target::AtLeast(0.9),
+                false,
+            )
+        };
+        // 0.8 of ten does not reject 0.9; 0.4 does: its 99.9 % bound is 0.83. 30 of 30 show 0.905.
+        assert_eq!(least(8, 10), None);
+        assert_eq!(least(4, 10), Some(false));
+        assert_eq!(least(10, 10), None);
+        assert_eq!(least(30, 30), Some(true));
+        let most = |hits, trials| {
+            holds(
+                &Statistic::Share(of(hits, trials)),
+                Target::AtMost(0.1),
+                false,
+            )
+        };
+        assert_eq!(
+            (most(2, 10), most(0, 29), most(6, 10)),
+            (None, Some(true), Some(false))
+        );
+        assert_eq!(least(0, 0), None);
+    }
+
+    #[test]
+    fn a_bound_meets_its_target_itself() {
+        // The upper bound of 27 of 2000 is below 2 %, that of 33 is not.
+        let bound = |hits| {
+            holds(
+                &Statistic::Bound(of(hits, 2000)),
+                Target::AtMost(0.02),
+                true,
+            )
+        };
+        assert_eq!((bound(27), bound(33)), (Some(true), Some(false)));
+    }
+
+    #[test]
+    fn averages_do_not_weigh_by_trials() {
+        let averaged = |full, all: &[Proportion]| {
+            holds(
+                &Statistic::Average(all.to_vec()),
+                Target::AtLeast(0.6),
+                full,
+            )
+        };
+        let (all, few) = (of(30, 30), of(2, 10));
+        assert_eq!(averaged(true, &[all, few]), Some(true));
+        assert_eq!(averaged(true, &[all, few, few, few]), Some(false));
+        // (0.25 + 0.27) / 2 with a sigma of about 0.07.
+        assert_eq!(averaged(false, &[of(5, 20), of(6, 22)]), Some(false));
+        assert_eq!(averaged(false, &[of(0, 1), of(1, 1)]), None);
+        assert_eq!(averaged(false, &[of(30, 30), of(30, 30)]), Some(true));
+    }
+
+    #[test]
+    fn the_least_of_several_shares_may_be_of_too_few_records() {
+        let families = |least, all: &[Proportion]| {
+            holds(
+                &Statistic::Least(all.to_vec()),
+                Target::AtLeast(least),
+                true,
+            )
+        };
+        // One of two that misses all of its twenty records.
+        let (all, none) = (of(20, 20), of(0, 20));
+        assert_eq!(families(0.8, &[all, none]), Some(false));
+        assert_eq!(families(0.8, &[all]), Some(true));
+        // 45 of 45 show no more than 0.936.
+        assert_eq!(families(0.99, &[of(45, 45)]), None);
+    }
+
+    #[test]
+    fn ratios_are_of_means() {
+        let ratio = |full, target, pairs: &[[f64; 2]]| {
+            holds(&Statistic::Ratio(pairs.to_vec()), target, full)
+        };
+        let most = Target::AtMost(1.2);
+        let fine = [[1.0, 1.0], [3.0, 3.0], [2.0, 2.0]];
+        let large = [[3.0, 2.0], [3.0, 2.0], [3.1, 2.0]];
+        for full in [true, false] {
+            assert_eq!(ratio(full, most, &fine), Some(true));
+            assert_eq!(ratio(full, most, &large), Some(false));
+        }
+        // One outlier among others does not reject, and confirms nothing.
+        assert_eq!(
+            ratio(false, most, &[[5.0, 1.0], [1.0, 1.0], [1.0, 1.0]]),
+            None
+        );
+        assert_eq!(ratio(false, most, &[[1.0, 1.0]]), None);
+        let band = Target::Between([0.8, 1.2]);
+        assert_eq!(ratio(true, band, &fine), Some(true));
+        assert_eq!(ratio(true, band, &large), Some(false));
+        assert_eq!(ratio(true, Target::AtLeast(1.4), &fine), Some(false));
+    }
+
+    #[test]
+    fn medians_and_means_have_their_scatter() {
+        let values: Vec<f64> = (0..101).map(f64::from).collect();
+        let median = Statistic::Median(values.clone());
+        // 1.645 sigmas of the count are 8.2 values about the middle, the fiftieth.
+        assert_eq!(holds(&median, Target::AtLeast(58.0), true), Some(true));
+        assert_eq!(holds(&median, Target::AtLeast(59.0), true), Some(false));
+        let mean = Statistic::Mean(values);
+        // The standard error is 2.92.
+        assert_eq!(holds(&mean, Target::AtMost(45.5), true), Some(true));
+        assert_eq!(holds(&mean, Target::AtMost(45.0), true), Some(false));
+        assert_eq!(holds(&mean, Target::AtMost(60.0), false), Some(true));
+    }
+}

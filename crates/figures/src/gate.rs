@@ -1,0 +1,201 @@
+//! Slow sections of continuous integration: what each depends on, and its stamp.
+//!
+//! A stamp, `.ci/stamps/NAME`, is the hash of the sources of a section when it passed last. `.ci/run` runs a section
+//! if its stamp is of other sources, and the section writes its stamp itself.
+
+use std::path::PathBuf;
+
+use gyrocal_testkit::workspace;
+
+use crate::error::Error;
+use crate::harness::sources::Sources;
+
+/// A slow section.
+struct SlowSection {
+    /// Its name, that of its script in `.ci/slow` and of its stamp.
+    name: &'static str,
+    sources: Sources,
+}
+
+/// All of them, in the order in which they are run.
+const SECTIONS: [SlowSection; 10] = [
+    section(
+        "documentation",
+        &["crates/cli", "crates/oracle", "crates/testkit"],
+        &[],
+    ),
+    section(
+        "builds",
+        &[
+            "",
+            "codegen/emit",
+            "codegen/plant",
+            "crates/emit",
+            "crates/testkit",
+        ],
+        &["docs/adding-a-term.md", "tests/derivation"],
+    ),
+    section(
+        "firmware",
+        &[
+            "crates/c-api",
+            "tests/firmware",
+            "examples/controller",
+            "crates/emit",
+        ],
+        &[
+            "crates/figures/src/embedded.rs",
+            "crates/figures/src/embedded",
+        ],
+    ),
+    section("formats", &["crates/instruments"], &["tests/data/dialects"]),
+    section(
+        "wheel",
+        &["crates/python"],
+        &["docs/python.md", "crates/figures/src/fleet"],
+    ),
+    section(
+        "packages",
+        &["codegen/emit", "examples/cart_pole"],
+        &["docs/notebook-to-rust.md"],
+    ),
+    section("new-plant", &["crates/cli"], &["examples/duffing"]),
+    section(
+        "manual",
+        &["crates/cli"],
+        &["docs", "README.md", "crates/python/python"],
+    ),
+    section(
+        "peers",
+        &["", "codegen/emit", "crates/testkit"],
+        &[
+            "benches",
+            "crates/figures/src/kernel",
+            "crates/figures/src/generator",
+        ],
+    ),
+    section(
+        "browser",
+        &["crates/pages"],
+        &[
+            "crates/figures/src/report.rs",
+            "crates/figures/src/report",
+            "docs/first-ten-minutes.md",
+        ],
+    ),
+];
+
+const fn section(
+    name: &'static str,
+    packages: &'static [&'static str],
+    files: &'static [&'static str],
+) -> SlowSection {
+    SlowSection {
+        name,
+        sources: Sources { packages, files },
+    }
+}
+
+impl SlowSection {
+    fn stamp(&self) -> PathBuf {
+        workspace().join(".ci/stamps").join(self.name)
+    }
+
+    fn is_stale(&self) -> Result<bool, Error> {
+        let stamp = std::fs::read_to_string(self.stamp()).unwrap_or_default();
+        Ok(stamp.trim() != self.sources.hash()?)
+    }
+}
+
+/// What is asked of slow sections.
+#[derive(clap::Args, Debug)]
+#[group(required = true, multiple = false)]
+pub(crate) struct Section {
+    /// List those whose stamp is of other sources than these.
+    #[arg(long)]
+    stale: bool,
+    /// List all.
+    #[arg(long)]
+    all: bool,
+    /// Write the stamp of a section that has passed; its script does this.
+    #[arg(long, value_name = "NAME")]
+    passed: Option<String>,
+}
+
+impl Section {
+    /// Prints names, a line each, or writes a stamp.
+    pub(crate) fn run(&self) -> Result<(), Error> {
+        if let Some(name) = &self.passed {
+            let mut sections = SECTIONS.iter();
+            let section = sections.find(|section| section.name == name);
+            let section = section.ok_or_else(|| format!("no slow section is called `{name}`"))?;
+            let line = format!("{}\n", section.sources.hash()?);
+            std::fs::create_dir_all(workspace().join(".ci/stamps"))?;
+            return Ok(gyrocal_record::write_whole(
+                &section.stamp(),
+                line.as_bytes(),
+            )?);
+        }
+        for section in &SECTIONS {
+            if self.all || section.is_stale()? {
+                println!("{}", section.name);
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a failure here is a failed test")]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+
+    #[test]
+    fn a_change_of_one_file_of_each_list_makes_a_section_stale() {
+        let root = workspace();
+        for section in &SECTIONS {
+            let hash = |changed: &Path| {
+                let read = |file: &Path| Ok(vec![u8::from(file == changed)]);
+                section.sources.hash_with(&root, read).unwrap()
+            };
+            let (before, files) = (
+                hash(Path::new("")),
+                section.sources.all_files(&root).unwrap(),
+            );
+            let Sources {
+                packages,
+                files: further,
+            } = section.sources;
+            for list in packages.iter().chain(further) {
+                // Of the root package the library.
+                let list = if list.is_empty() { "src" } else { list };
+                let mut of_list = files.iter().filter(|file| file.starts_with(list));
+                let changed = of_list
+                    .next()
+                    .unwrap_or_else(|| panic!("{}: no file in {list}", section.name));
+                assert_ne!(
+                    hash(changed),
+                    before,
+                    "{}: {}",
+                    section.name,
+                    changed.display()
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn each_section_has_a_script() {
+        let folder = workspace().join(".ci/slow");
+        let mut scripts: Vec<String> = std::fs::read_dir(&folder)
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        scripts.sort();
+        let mut names: Vec<&str> = SECTIONS.iter().map(|section| section.name).collect();
+        names.sort_unstable();
+        assert_eq!(scripts, names);
+    }
+}

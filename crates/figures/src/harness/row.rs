@@ -1,0 +1,126 @@
+//! One row of a table of figures: a statistic over a population, its target, and the reason of the target.
+
+use gyrocal_evaluation::{Statistic, Target};
+use gyrocal_statistics::Proportion;
+
+use super::population::Records;
+use crate::figure::Figure;
+
+/// A statistic over the records of a population.
+pub(crate) struct Row<'a, R> {
+    name: String,
+    target: Option<Target>,
+    /// Why the target is what it is.
+    reason: &'static str,
+    of: Box<dyn Fn(&[R]) -> Measured + 'a>,
+}
+
+/// What a row says.
+enum Measured {
+    Statistic(Statistic),
+    /// Words, and the number of runs that they are of.
+    Words(String, usize),
+}
+
+impl<'a, R> Row<'a, R> {
+    /// A statistic of all records.
+    pub(crate) fn new(name: impl Into<String>, of: impl Fn(&[R]) -> Statistic + 'a) -> Self {
+        Self {
+            name: name.into(),
+            target: None,
+            reason: "",
+            of: Box::new(move |records| Measured::Statistic(of(records))),
+        }
+    }
+
+    /// The share of records for which `of` is true, among those for which it is anything.
+    pub(crate) fn share(name: impl Into<String>, of: impl Fn(&R) -> Option<bool> + 'a) -> Self {
+        Self::new(name, move |records| Statistic::share(records, &of))
+    }
+
+    /// The share of all items of all records that are true.
+    pub(crate) fn each<I: IntoIterator<Item = bool>>(
+        name: impl Into<String>,
+        of: impl Fn(&R) -> I + 'a,
+    ) -> Self {
+        Self::new(name, move |records| {
+            Statistic::Share(Proportion::of(records.iter().flat_map(&of)))
+        })
+    }
+
+    /// The upper 95 % bound of a share.
+    pub(crate) fn bound(name: impl Into<String>, of: impl Fn(&R) -> bool + 'a) -> Self {
+        Self::new(name, move |records| {
+            Statistic::Bound(Proportion::of(records.iter().map(&of)))
+        })
+    }
+
+    /// The mean of one number a record.
+    pub(crate) fn mean(name: impl Into<String>, of: impl Fn(&R) -> Option<f64> + 'a) -> Self {
+        Self::new(name, move |records| {
+            Statistic::Mean(records.iter().filter_map(&of).collect())
+        })
+    }
+
+    /// The median of one number a record.
+    pub(crate) fn median(name: impl Into<String>, of: impl Fn(&R) -> Option<f64> + 'a) -> Self {
+        Self::new(name, move |records| {
+            Statistic::Median(records.iter().filter_map(&of).collect())
+        })
+    }
+
+    /// The ratio of the means of two numbers a record.
+    pub(crate) fn ratio(name: impl Into<String>, of: impl Fn(&R) -> Option<[f64; 2]> + 'a) -> Self {
+        Self::new(name, move |records| {
+            Statistic::Ratio(records.iter().filter_map(&of).collect())
+        })
+    }
+
+    /// Words about all records, without a target.
+    pub(crate) fn words(name: impl Into<String>, of: impl Fn(&[R]) -> String + 'a) -> Self {
+        Self {
+            name: name.into(),
+            target: None,
+            reason: "",
+            of: Box::new(move |records| Measured::Words(of(records), records.len())),
+        }
+    }
+
+    /// With a lower limit.
+    pub(crate) fn at_least(self, least: f64, reason: &'static str) -> Self {
+        self.to_be(Target::AtLeast(least), reason)
+    }
+
+    /// With an upper limit.
+    pub(crate) fn at_most(self, most: f64, reason: &'static str) -> Self {
+        self.to_be(Target::AtMost(most), reason)
+    }
+
+    /// With both.
+    pub(crate) fn between(self, range: [f64; 2], reason: &'static str) -> Self {
+        self.to_be(Target::Between(range), reason)
+    }
+
+    fn to_be(self, target: Target, reason: &'static str) -> Self {
+        Self {
+            target: Some(target),
+            reason,
+            ..self
+        }
+    }
+
+    /// The figure of these records.
+    pub(super) fn figure(&self, of: &Records<R>) -> Figure {
+        let figure = match (self.of)(&of.records) {
+            Measured::Statistic(statistic) => {
+                Figure::of_statistic(&self.name, &statistic, self.target, of.full)
+            }
+            Measured::Words(words, runs) => Figure::note(&self.name, words).over(runs, ""),
+        };
+        let runs = figure.runs;
+        Figure {
+            reason: self.reason.to_owned(),
+            ..figure.over(runs, of.seeds.as_str())
+        }
+    }
+}

@@ -1,0 +1,216 @@
+//! The hash of the sources that can move a result: files of packages, of all packages that they depend on by path,
+//! and single files. Equal sources give equal hashes on every machine.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::{Mutex, PoisonError};
+
+use gyrocal_testkit::workspace;
+use sha2::{Digest as _, Sha256};
+use toml::{Table, Value};
+
+use crate::error::Error;
+
+/// Digits of a hash that are printed.
+const DIGITS: usize = 12;
+
+/// Parts of a package that its dependants do not compile.
+const OWN: [&str; 3] = ["tests", "benches", "examples"];
+
+/// What a result depends on, from the root of the workspace.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sources {
+    /// Folders of packages: all of their files, and those that they depend on by path.
+    pub(crate) packages: &'static [&'static str],
+    /// Further files and folders.
+    pub(crate) files: &'static [&'static str],
+}
+
+impl Sources {
+    /// The hash, computed once in a process.
+    pub(crate) fn hash(&self) -> Result<String, Error> {
+        static KNOWN: Mutex<BTreeMap<String, String>> = Mutex::new(BTreeMap::new());
+        let key = format!("{self:?}");
+        let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(hash) = known.get(&key) {
+            return Ok(hash.clone());
+        }
+        let root = workspace();
+        let hash = self.hash_with(&root, |file| Ok(std::fs::read(root.join(file))?))?;
+        known.insert(key, hash.clone());
+        Ok(hash)
+    }
+
+    /// The hash of the contents that `read` gives for each file.
+    pub(crate) fn hash_with(
+        &self,
+        root: &Path,
+        read: impl Fn(&Path) -> Result<Vec<u8>, Error>,
+    ) -> Result<String, Error> {
+        let mut hasher = Sha256::new();
+        for file in self.all_files(root)? {
+            hasher.update(file.to_string_lossy().as_bytes());
+            let content = read(&file)?;
+            hasher.update((content.len() as u64).to_le_bytes());
+            hasher.update(content);
+        }
+        let digest = hasher.finalize();
+        let text: String = digest.iter().map(|byte| format!("{byte:02x}")).collect();
+        Ok(text[..DIGITS].to_owned())
+    }
+
+    /// All files, sorted, without those that version control ignores.
+    pub(crate) fn all_files(&self, root: &Path) -> Result<Vec<PathBuf>, Error> {
+        let mut paths: BTreeSet<String> =
+            self.files.iter().map(|file| (*file).to_owned()).collect();
+        paths.extend(["Cargo.toml".to_owned(), "Cargo.lock".to_owned()]);
+        for (package, is_named) in closure(root, self.packages)? {
+            let folder = package.to_string_lossy().into_owned();
+            // The root package is a workspace, too: of its folder the parts that it is compiled from.
+            if folder.is_empty() {
+                paths.extend(["src", "build.rs", "codegen/derive"].map(str::to_owned));
+                continue;
+            }
+            paths.insert(folder.clone());
+            if !is_named {
+                let own = OWN.map(|part| format!(":(exclude){folder}/{part}"));
+                paths.extend(own);
+            }
+        }
+        let output = Command::new("git")
+            .arg("-C")
+            .arg(root)
+            .args([
+                "ls-files",
+                "--cached",
+                "--others",
+                "--exclude-standard",
+                "-z",
+                "--",
+            ])
+            .args(&paths)
+            .output()?;
+        if !output.status.success() {
+            let why = String::from_utf8_lossy(&output.stderr);
+            return Err(format!("git does not list the sources: {why}").into());
+        }
+        let names = output
+            .stdout
+            .split(|byte| *byte == 0)
+            .filter(|name| !name.is_empty());
+        let files: BTreeSet<PathBuf> = names
+            .map(|name| PathBuf::from(String::from_utf8_lossy(name).into_owned()))
+            .filter(|file| root.join(file).is_file())
+            .collect();
+        Ok(files.into_iter().collect())
+    }
+}
+
+/// Folders of packages and of all that they depend on by path; `true` for those that are named.
+fn closure(root: &Path, named: &[&str]) -> Result<BTreeMap<PathBuf, bool>, Error> {
+    let shared = manifest(root, Path::new(""))?;
+    let shared = shared
+        .get("workspace")
+        .and_then(|all| all.get("dependencies"));
+    let mut found: BTreeMap<PathBuf, bool> = BTreeMap::new();
+    let mut waiting: Vec<(PathBuf, bool)> = named
+        .iter()
+        .map(|folder| (PathBuf::from(folder), true))
+        .collect();
+    while let Some((folder, is_named)) = waiting.pop() {
+        if found.contains_key(&folder) {
+            continue;
+        }
+        let manifest = manifest(root, &folder)?;
+        let kinds: &[&str] = match is_named {
+            true => &["dependencies", "build-dependencies", "dev-dependencies"],
+            false => &["dependencies", "build-dependencies"],
+        };
+        for (name, dependency) in kinds
+            .iter()
+            .filter_map(|kind| manifest.get(*kind)?.as_table())
+            .flatten()
+        {
+            let own = dependency.get("path").and_then(Value::as_str);
+            let path = match (own, dependency.get("workspace")) {
+                (Some(path), _) => Some(folder.join(path)),
+                (None, Some(_)) => shared
+                    .and_then(|all| all.get(name)?.get("path")?.as_str())
+                    .map(PathBuf::from),
+                (None, None) => None,
+            };
+            waiting.extend(path.map(|path| (plain(&path), false)));
+        }
+        found.insert(folder, is_named);
+    }
+    Ok(found)
+}
+
+fn manifest(root: &Path, folder: &Path) -> Result<Table, Error> {
+    let path = root.join(folder).join("Cargo.toml");
+    let text =
+        std::fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
+    Ok(toml::from_str(&text)?)
+}
+
+/// The path without `.` and `..`.
+fn plain(path: &Path) -> PathBuf {
+    let mut parts: Vec<&str> = Vec::new();
+    for part in path.iter().filter_map(|part| part.to_str()) {
+        match part {
+            ".." => drop(parts.pop()),
+            "." => {}
+            part => parts.push(part),
+        }
+    }
+    parts.iter().collect()
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a failure here is a failed test")]
+mod tests {
+    use super::*;
+
+    const WATCH: Sources = Sources {
+        packages: &["crates/watch"],
+        files: &["LICENSE-MIT"],
+    };
+
+    #[test]
+    fn a_change_of_any_file_is_seen() {
+        let root = workspace();
+        let plain = WATCH.hash_with(&root, |_| Ok(Vec::new())).unwrap();
+        for changed in WATCH.all_files(&root).unwrap() {
+            let read = |file: &Path| {
+                Ok(if file == changed {
+                    b"x".to_vec()
+                } else {
+                    Vec::new()
+                })
+            };
+            assert_ne!(
+                WATCH.hash_with(&root, read).unwrap(),
+                plain,
+                "{}",
+                changed.display()
+            );
+        }
+    }
+
+    #[test]
+    fn dependencies_by_path_are_sources_but_not_their_tests() {
+        let files = WATCH.all_files(&workspace()).unwrap();
+        let has = |file: &str| files.iter().any(|one| one == Path::new(file));
+        for file in [
+            "crates/watch/src/lib.rs",
+            "crates/watch/tests/dense.rs",
+            "LICENSE-MIT",
+        ] {
+            assert!(has(file), "{file}");
+        }
+        assert!(has("crates/scalar/src/lib.rs") && has("Cargo.lock"));
+        assert!(!has("crates/scalar/tests/single_precision.rs"));
+        assert!(!has("crates/diagnosis/src/lib.rs"));
+    }
+}

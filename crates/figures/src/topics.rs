@@ -1,0 +1,351 @@
+//! The eight topics: which part measures what.
+
+use crate::error::Error;
+use crate::figure::Figure;
+use crate::harness::Context;
+use crate::harness::sources::Sources;
+use crate::harness::topic::{Part, Topic};
+use crate::truth::Extent;
+use crate::{
+    any_plant, calibration, catalogue, comparison, diagnosis_ground, embedded, fleet, gain,
+    generator, house, kernel, logs, main_job, measured, naming, paper, plant_peers, report, truth,
+    uncertainty, watch,
+};
+
+/// Packages of the platform's filter, of its calibration and diagnosis, of plants, and of all commands, each with
+/// all that it depends on.
+pub(crate) const FILTER: &[&str] = &["", "crates/testkit"];
+pub(crate) const CALIBRATION: &[&str] =
+    &["crates/calibration", "crates/truth", "crates/evaluation"];
+pub(crate) const DIAGNOSIS: &[&str] = &[
+    "crates/diagnosis",
+    "crates/design",
+    "crates/truth",
+    "crates/evaluation",
+];
+pub(crate) const INSTRUMENTS: &[&str] =
+    &["crates/instruments", "crates/diagnosis", "crates/testkit"];
+pub(crate) const PLANTS: &[&str] = &["crates/plant", "codegen/plant", "crates/evaluation"];
+pub(crate) const COMMAND: &[&str] = &["crates/cli"];
+
+/// All topics.
+pub(crate) const TOPICS: [Topic; 8] = [
+    Topic {
+        name: "kernel",
+        about: "The filter's kernel and generated code: speed, scaling, rounding, instructions, other generators.",
+        parts: &[
+            part(
+                "filter",
+                "The structured kernel: speed, scaling, rounding errors, instructions.",
+                of(
+                    FILTER,
+                    &[
+                        "crates/figures/src/kernel.rs",
+                        "crates/figures/src/kernel",
+                        "benches",
+                    ],
+                ),
+                |to| kernel::figures(to.is_small(), to.write),
+            ),
+            Part {
+                introduction: |_| generator::INTRODUCTION.to_owned(),
+                ..part(
+                    "generator",
+                    "The generator of Rust against others: speed, instructions, operations, random graphs.",
+                    of(
+                        FILTER,
+                        &[
+                            "crates/figures/src/generator.rs",
+                            "crates/figures/src/generator",
+                        ],
+                    ),
+                    |to| generator::figures(to.is_small()),
+                )
+            },
+        ],
+    },
+    Topic {
+        name: "calibration",
+        about: "From symbols to nine drift coefficients: consistency, exactness, cost, budget, the paper.",
+        parts: &[
+            part(
+                "main-job",
+                "Records of another simulator, and populations beside the paper's filter.",
+                of(
+                    CALIBRATION,
+                    &[
+                        "crates/figures/src/main_job.rs",
+                        "crates/figures/src/main_job",
+                    ],
+                ),
+                |to| main_job::figures(to.is_small()),
+            ),
+            part(
+                "estimator",
+                "The batch estimator: consistency over a population, exactness, cost.",
+                of(
+                    CALIBRATION,
+                    &[
+                        "crates/figures/src/calibration.rs",
+                        "crates/figures/src/calibration",
+                    ],
+                ),
+                |to| calibration::figures(to.is_small()),
+            ),
+            part(
+                "budget",
+                "The uncertainty budget against simulated and calibrated runs.",
+                of(CALIBRATION, &["crates/figures/src/uncertainty.rs"]),
+                |to| uncertainty::figures(Extent::of(to)),
+            ),
+            part(
+                "paper",
+                "The paper, reproduced and corrected: docs/paper.md and its pictures.",
+                of(
+                    CALIBRATION,
+                    &["crates/figures/src/paper.rs", "crates/figures/src/paper"],
+                ),
+                |to| paper::figures(to.write),
+            ),
+        ],
+    },
+    Topic {
+        name: "diagnosis",
+        about: "Truth of the diagnosis: clean records, causes, noise, effects outside of the catalogue, set-up, hostile records.",
+        parts: &[
+            diagnosed(
+                "ground",
+                "The noise audit, and signatures against the simulation.",
+                |to| diagnosis_ground::figures(to.is_small()),
+            ),
+            diagnosed(
+                "naming",
+                "Cells of `gyrocal characterise`: detection, names, sets, false alarms.",
+                |to| naming::figures(Extent::of(to)),
+            ),
+            Part {
+                introduction: comparison::side_by_side,
+                ..diagnosed(
+                    "comparison",
+                    "The diagnosis beside the usual tests and selection methods, on the same records.",
+                    |to| comparison::figures(to.is_small()),
+                )
+            },
+            diagnosed(
+                "gain",
+                "Gain of extended models: in cross-validation, in the coefficients, on a second record.",
+                |to| gain::figures(to.is_small()),
+            ),
+            diagnosed("setup", "Gross errors of the set-up.", |to| {
+                truth::setup::figures(to.is_small())
+            }),
+            diagnosed("hostile", "Work on records that no model fits.", |to| {
+                truth::hostile::figures(to.is_small())
+            }),
+            diagnosed("shapes", "Onsets and time constants.", |to| {
+                truth::shapes::figures(Extent::of(to))
+            }),
+            diagnosed(
+                "causes",
+                "One cause of the catalogue in noise that is misdeclared in half of the records.",
+                |to| truth::causes::figures(Extent::of(to)),
+            ),
+            diagnosed("walks", "Random walks of the gyros.", |to| {
+                truth::noise::of_walks(to)
+            }),
+            diagnosed("flicker", "Flicker of the gyros.", |to| {
+                truth::noise::of_flicker(to)
+            }),
+            diagnosed(
+                "clean",
+                "Noise other than declared, without a cause.",
+                |to| truth::noise::of_clean(to),
+            ),
+            diagnosed(
+                "together",
+                "A cause of the catalogue beside random walks.",
+                |to| truth::together::figures(Extent::of(to)),
+            ),
+            diagnosed("outside", "Causes outside of the catalogue.", |to| {
+                truth::outside::figures(Extent::of(to))
+            }),
+            part(
+                "catalogue",
+                "The catalogue of effects: docs/catalogue.md and a picture of each signature.",
+                of(
+                    DIAGNOSIS,
+                    &[
+                        "crates/figures/src/catalogue.rs",
+                        "crates/figures/src/catalogue",
+                    ],
+                ),
+                |to| catalogue::figures(to.write),
+            ),
+        ],
+    },
+    Topic {
+        name: "records",
+        about: "Several records of one platform, and planned runs.",
+        parts: &[
+            diagnosed(
+                "several",
+                "Several records of one platform, diagnosed together.",
+                |to| logs::records::figures(Extent::of(to)),
+            ),
+            diagnosed(
+                "planning",
+                "Planned runs, made: predicted against actual sigmas and confidence sets.",
+                |to| naming::plan::figures(to.is_small()),
+            ),
+        ],
+    },
+    Topic {
+        name: "instruments",
+        about: "Instrument tests on simulated logs and on recordings of real gyros.",
+        parts: &[
+            part(
+                "logs",
+                "Instrument tests on simulated logs: noise, positions, stops, rates.",
+                of(
+                    INSTRUMENTS,
+                    &["crates/figures/src/logs.rs", "crates/figures/src/logs"],
+                ),
+                |to| logs::figures(Extent::of(to)),
+            ),
+            part(
+                "measured",
+                "Two recordings of real gyros: docs/measured-data.md.",
+                of(
+                    INSTRUMENTS,
+                    &[
+                        "crates/figures/src/measured.rs",
+                        "crates/figures/src/measured",
+                    ],
+                ),
+                |to| measured::figures(to.write),
+            ),
+        ],
+    },
+    Topic {
+        name: "plants",
+        about: "Diagnosis of any plant: simulated plants with hidden effects, other tools.",
+        parts: &[
+            part(
+                "simulated",
+                "Five simulated plants with hidden effects: alarms, sets, gain, starts, time.",
+                of(
+                    PLANTS,
+                    &[
+                        "crates/figures/src/any_plant.rs",
+                        "crates/figures/src/any_plant",
+                    ],
+                ),
+                |to| any_plant::figures(Extent::of(to)),
+            ),
+            Part {
+                small: false,
+                ..part(
+                    "peers",
+                    "The diagnosis of a plant beside sparse and symbolic regression from PyPI.",
+                    of(PLANTS, &["crates/figures/src/plant_peers.rs"]),
+                    |to| plant_peers::figures(Extent::of(to)),
+                )
+            },
+        ],
+    },
+    Topic {
+        name: "doors",
+        about: "What people meet: report, Python, fleets; the structure of the tree, its build and its gate.",
+        parts: &[
+            part(
+                "structure",
+                "Structure of the tree, equal results before and after, cost of a build.",
+                of(COMMAND, &["crates", "codegen", "src"]),
+                |to| house::figures(to.is_small(), to.write),
+            ),
+            part(
+                "report",
+                "The report: its files, in a browser; pictures of it.",
+                of(
+                    COMMAND,
+                    &["crates/figures/src/report.rs", "crates/figures/src/report"],
+                ),
+                |to| report::figures(to.is_small(), to.write),
+            ),
+            Part {
+                small: false,
+                ..part(
+                    "fleet",
+                    "The Python package: its wheel, a first diagnosis with it, fleets of records.",
+                    of(
+                        &["crates/python", "crates/fleet"],
+                        &["crates/figures/src/fleet.rs", "crates/figures/src/fleet"],
+                    ),
+                    |to| fleet::figures(Extent::of(to)),
+                )
+            },
+        ],
+    },
+    Topic {
+        name: "embedded",
+        about: "The filter and the watch in a controller.",
+        parts: &[
+            Part {
+                small: false,
+                ..part(
+                    "controller",
+                    "The filter on an emulated Cortex-M4F, single precision, C.",
+                    of(
+                        &["", "crates/c-api", "tests/firmware"],
+                        &[
+                            "crates/figures/src/embedded.rs",
+                            "crates/figures/src/embedded",
+                        ],
+                    ),
+                    |to| embedded::figures(to.is_small()),
+                )
+            },
+            part(
+                "watch",
+                "The watch beside the filter: false alarms, delays, jumps, sets in simulated platform-years.",
+                of(
+                    &["", "crates/evaluation"],
+                    &["crates/figures/src/watch.rs", "crates/figures/src/watch"],
+                ),
+                |to| watch::figures(Extent::of(to)),
+            ),
+        ],
+    },
+];
+
+pub(crate) const fn of(
+    packages: &'static [&'static str],
+    files: &'static [&'static str],
+) -> Sources {
+    Sources { packages, files }
+}
+
+const fn part(
+    name: &'static str,
+    about: &'static str,
+    sources: Sources,
+    figures: fn(&Context) -> Result<Vec<Figure>, Error>,
+) -> Part {
+    Part {
+        name,
+        about,
+        small: true,
+        sources,
+        figures,
+        introduction: |_| String::new(),
+    }
+}
+
+/// A part that measures diagnoses of simulated records of the platform.
+const fn diagnosed(
+    name: &'static str,
+    about: &'static str,
+    figures: fn(&Context) -> Result<Vec<Figure>, Error>,
+) -> Part {
+    part(name, about, of(DIAGNOSIS, &["crates/figures/src"]), figures)
+}
