@@ -159,7 +159,7 @@ pub(crate) const TOPICS: [Topic; 8] = [
             diagnosed(
                 "clean",
                 "Noise other than declared, without a cause.",
-                |to| truth::noise::of_clean(to),
+                truth::noise::of_clean,
             ),
             diagnosed(
                 "together",

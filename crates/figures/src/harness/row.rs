@@ -12,8 +12,11 @@ pub(crate) struct Row<'a, R> {
     target: Option<Target>,
     /// Why the target is what it is.
     reason: &'static str,
-    of: Box<dyn Fn(&[R]) -> Measured + 'a>,
+    of: Of<'a, R>,
 }
+
+/// What a row says of all records.
+type Of<'a, R> = Box<dyn Fn(&[R]) -> Measured + 'a>;
 
 /// What a row says.
 enum Measured {
@@ -88,20 +91,20 @@ impl<'a, R> Row<'a, R> {
 
     /// With a lower limit.
     pub(crate) fn at_least(self, least: f64, reason: &'static str) -> Self {
-        self.to_be(Target::AtLeast(least), reason)
+        self.with_target(Target::AtLeast(least), reason)
     }
 
     /// With an upper limit.
     pub(crate) fn at_most(self, most: f64, reason: &'static str) -> Self {
-        self.to_be(Target::AtMost(most), reason)
+        self.with_target(Target::AtMost(most), reason)
     }
 
     /// With both.
     pub(crate) fn between(self, range: [f64; 2], reason: &'static str) -> Self {
-        self.to_be(Target::Between(range), reason)
+        self.with_target(Target::Between(range), reason)
     }
 
-    fn to_be(self, target: Target, reason: &'static str) -> Self {
+    fn with_target(self, target: Target, reason: &'static str) -> Self {
         Self {
             target: Some(target),
             reason,
