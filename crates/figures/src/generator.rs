@@ -1,27 +1,21 @@
 //! The generator against others: time and instructions of emitted functions, time of emission, edges
-//! of operations, random graphs, a filter step, and what a new plant takes.
+//! of operations, random graphs, and what a new plant takes.
 
 mod emission;
 mod operations;
 mod plant;
 mod race;
 
-use gyrocal_testkit::timing;
-
 use crate::error::Error;
 use crate::figure::Figure;
 use crate::kernel::instructions::root;
-use crate::kernel::speed;
 
 /// How to read the page of the topic, and why targets are missed.
 pub(crate) const INTRODUCTION: &str = include_str!("generator/introduction.md");
 
-/// Rounds of the filter step.
-const ROUNDS: usize = 501;
-
 /// All figures of the topic. With `small`, nothing that builds packages or installs generators.
 pub(crate) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
-    let mut figures = vec![Figure::note("processor", timing::processor())];
+    let mut figures = Vec::new();
     if small {
         figures.push(emission::figure()?);
         figures.extend(plant::lines()?);
@@ -29,8 +23,6 @@ pub(crate) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
     }
     let directory = root().join("target/figures/generator");
     figures.extend(race::figures(&directory)?);
-    figures.extend(speed::figures(ROUNDS)?);
-    figures.extend(speed::of_other_builds(ROUNDS)?);
     figures.push(emission::figure()?);
     figures.extend(operations::figures(&directory)?);
     figures.extend(emission::of_huge_programs()?);

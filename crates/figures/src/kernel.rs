@@ -15,16 +15,19 @@ use crate::figure::Figure;
 
 const RULES: [(&str, Integration); 2] = [("euler", Integration::EULER), ("rk4", Integration::RK4)];
 
-/// All figures of the topic. With `write`, the committed instruction counts are renewed.
+/// Why ratios of builds for wide vectors are below their targets.
+pub(crate) const INTRODUCTION: &str = include_str!("kernel/introduction.md");
+
+/// All figures of the part. With `write`, the committed instruction counts are renewed.
 pub(crate) fn figures(small: bool, write: bool) -> Result<Vec<Figure>, Error> {
     if write {
         return instructions::renewed();
     }
     let rounds = if small { 101 } else { 501 };
-    let mut figures = vec![
-        Figure::note("processor", timing::processor()),
-        Figure::note("target features of this build", timing::target_features()),
-    ];
+    let mut figures = vec![Figure::note(
+        "target features of this build",
+        timing::target_features(),
+    )];
     let mut timed = speed::figures(rounds)?;
     if !small {
         timed.extend(speed::of_other_builds(rounds)?);

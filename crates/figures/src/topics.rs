@@ -34,19 +34,22 @@ pub(crate) const TOPICS: [Topic; 8] = [
         name: "kernel",
         about: "The filter's kernel and generated code: speed, scaling, rounding, instructions, other generators.",
         parts: &[
-            part(
-                "filter",
-                "The structured kernel: speed, scaling, rounding errors, instructions.",
-                of(
-                    FILTER,
-                    &[
-                        "crates/figures/src/kernel.rs",
-                        "crates/figures/src/kernel",
-                        "benches",
-                    ],
-                ),
-                |to| kernel::figures(to.is_small(), to.write),
-            ),
+            Part {
+                introduction: |_| kernel::INTRODUCTION.to_owned(),
+                ..part(
+                    "filter",
+                    "The structured kernel: speed, scaling, rounding errors, instructions.",
+                    of(
+                        FILTER,
+                        &[
+                            "crates/figures/src/kernel.rs",
+                            "crates/figures/src/kernel",
+                            "benches",
+                        ],
+                    ),
+                    |to| kernel::figures(to.is_small(), to.write),
+                )
+            },
             Part {
                 introduction: |_| generator::INTRODUCTION.to_owned(),
                 ..part(
