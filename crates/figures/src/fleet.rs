@@ -12,7 +12,7 @@ use std::process::Command;
 use std::time::Instant;
 
 use gyrocal_record::write_json;
-use gyrocal_testkit::timing;
+use gyrocal_testkit::{Tool, leave_out, system_python, timing, tool};
 use serde::Deserialize;
 
 use crate::error::Error;
@@ -40,15 +40,13 @@ pub(crate) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
     Ok(figures)
 }
 
-/// Those of the package. The small version repeats less and leaves the fleet to the tests of the package;
-/// without Python, or where its packages cannot be had, nothing is judged.
+/// Those of the package. The small version repeats less and leaves the fleet to the tests of the package.
 fn of_package(small: bool) -> Result<Vec<Figure>, Error> {
     let build = root().join(PACKAGE).join("build");
     if let Err(missing) = output(Command::new(build).arg("environment")) {
-        eprintln!("NOTHING OF THE PYTHON PACKAGE IS MEASURED: {missing}");
-        let first = missing.to_string();
-        let line = first.lines().last().unwrap_or_default().to_owned();
-        return Ok(vec![Figure::note("the Python package: not judged", line)]);
+        leave_out(&missing.to_string());
+        let reason = "crates/python/build failed".to_owned();
+        return Ok(vec![Figure::note("the Python package: not judged", reason)]);
     }
     let wheel = wheel()?;
     let mut figures = vec![size(&wheel)?, import(if small { 3 } else { 15 })?];
@@ -138,9 +136,6 @@ fn measured_once<T: for<'a> Deserialize<'a>>(arguments: &[&str]) -> Result<T, Er
 /// Records that Spark maps.
 const RECORDS_OF_SPARK: usize = 60;
 
-/// An environment with the wheel and pyspark, beside a Java; without it Spark is not run.
-const SPARK: &str = "GYROCAL_SPARK_PYTHON";
-
 /// What Spark gave.
 #[derive(Deserialize)]
 struct Spark {
@@ -150,10 +145,10 @@ struct Spark {
 /// The documented lines for Spark: rows of the same bits.
 fn spark(records: usize) -> Result<Figure, Error> {
     let name = "Spark maps the records by the lines of docs/python.md: equal bits";
-    let Some(python) = std::env::var_os(SPARK) else {
-        return Ok(Figure::note(name, format!("not run: {SPARK} is not set")));
+    let Some(python) = tool(Tool::Spark) else {
+        return Ok(Figure::note(name, Tool::Spark.missing()));
     };
-    let found: Spark = measured_by(Path::new(&python), &["spark", &records.to_string()])?;
+    let found: Spark = measured_by(&python, &["spark", &records.to_string()])?;
     Ok(Figure::truth(name, found.equal).over(records, format!("0..{records}")))
 }
 
@@ -172,7 +167,6 @@ fn first_diagnosis(wheel: &Path) -> Result<Figure, Error> {
     let environment = tempfile::tempdir()?;
     let place = environment.path();
     let path = "/usr/local/bin:/usr/bin:/bin";
-    let python = output(Command::new("python3").args(["-c", "import sys; print(sys.executable)"]))?;
     let clean = |program: &Path| {
         let mut command = Command::new(program);
         command
@@ -182,11 +176,7 @@ fn first_diagnosis(wheel: &Path) -> Result<Figure, Error> {
         command
     };
     let started = Instant::now();
-    output(
-        clean(Path::new(python.trim()))
-            .args(["-m", "venv"])
-            .arg(place),
-    )?;
+    output(clean(&system_python()).args(["-m", "venv"]).arg(place))?;
     let pip = [
         "-m",
         "pip",

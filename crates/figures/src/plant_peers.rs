@@ -1,17 +1,17 @@
 //! The diagnosis of a plant beside sparse regression (pysindy) and symbolic regression (pyoperon), on the
 //! same records of a quadrotor whose states are all measured, with the same candidate terms.
 //!
-//! Both come from PyPI, by their hashes, into an environment of their own; where they cannot be had,
-//! nothing is compared.
+//! Both come from PyPI, by their hashes, into an environment of their own.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
 
 use gyrocal_plant::{LoadedPlant, PlantRecord, SearchOptions, diagnose};
 use gyrocal_plant_truth::{Kind, Run, Setting, Stream, simulate, strength, with_strength};
 use gyrocal_statistics::{Proportion, median};
+use gyrocal_testkit::python_with;
 use serde::{Deserialize, Serialize};
 
 use crate::any_plant::loaded;
@@ -77,12 +77,10 @@ struct Said {
 pub(crate) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
     let directory = gyrocal_testkit::workspace().join("target/figures/plant-peers");
     std::fs::create_dir_all(&directory)?;
-    let python = match environment(&directory) {
-        Ok(python) => python,
-        Err(error) => {
-            let reason = format!("pysindy and pyoperon cannot be had: {error}");
-            return Ok(vec![Figure::note("plant peers: not compared", reason)]);
-        }
+    let Some(python) = python_with(&directory, include_str!("plant_peers/requirements.lock"))
+    else {
+        let reason = "pysindy and pyoperon cannot be had".to_owned();
+        return Ok(vec![Figure::note("plant peers: not compared", reason)]);
     };
     let plant = loaded(Kind::Quadrotor)?;
     let count = extent.records(40, 3);
@@ -105,36 +103,6 @@ pub(crate) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
     let noted = core::iter::once(own).chain(peers);
     let noted = noted.flat_map(|row| row.figures(&seeds));
     Ok(judged.chain(noted).collect())
-}
-
-fn environment(directory: &Path) -> Result<PathBuf, Error> {
-    let environment = directory.join("env");
-    let python = environment.join("bin/python");
-    let done = environment.join("complete");
-    if !done.is_file() {
-        let lock = directory.join("requirements.lock");
-        std::fs::write(&lock, include_str!("plant_peers/requirements.lock"))?;
-        output(
-            Command::new("python3")
-                .args(["-m", "venv"])
-                .arg(&environment),
-        )?;
-        let mut install = Command::new(&python);
-        install.args([
-            "-m",
-            "pip",
-            "install",
-            "--quiet",
-            "--disable-pip-version-check",
-        ]);
-        output(
-            install
-                .args(["--require-hashes", "--requirement"])
-                .arg(lock),
-        )?;
-        std::fs::write(done, "")?;
-    }
-    Ok(python)
 }
 
 fn record(plant: &LoadedPlant, run: &Run) -> Result<PlantRecord, Error> {

@@ -7,6 +7,8 @@ import signal
 import threading
 import time
 
+import dask
+import distributed
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
@@ -241,8 +243,6 @@ def test_columns_of_other_names_are_refused_in_words(records):
 
 
 def test_killed_workers_lose_and_repeat_nothing(tmp_path, records, expected):
-    dask = pytest.importorskip("dask")
-    distributed = pytest.importorskip("distributed")
     source, out = tmp_path / "in", tmp_path / "out"
     write_partitions(source, records, 8)
     finished = {}

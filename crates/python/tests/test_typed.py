@@ -3,15 +3,12 @@
 import subprocess
 import sys
 
-import pytest
-
 from conftest import ROOT
 
 TESTS = ROOT / "crates" / "python" / "tests"
 
 
 def test_a_type_checker_accepts_what_is_right_and_refuses_what_is_wrong(tmp_path):
-    pytest.importorskip("mypy")
     # Outside of the tree, so that the package is the installed one.
     file = tmp_path / "typed_use.py"
     file.write_text((TESTS / "typed_use.py").read_text())

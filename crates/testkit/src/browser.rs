@@ -1,4 +1,4 @@
-//! A headless browser for pages: Debian's package `chromium`, driven over a pair of pipes with the
+//! A headless browser for pages, driven over a pair of pipes with the
 //! Chrome DevTools Protocol (<https://chromedevtools.github.io/devtools-protocol/>).
 
 use std::io::{BufRead as _, BufReader, Write as _};
@@ -10,6 +10,8 @@ use std::time::{Duration, Instant};
 use base64::Engine as _;
 use serde_json::{Value, json};
 use tempfile::TempDir;
+
+use crate::{Tool, tool};
 
 /// Longest time that a browser may take to answer.
 const PATIENCE: Duration = Duration::from_secs(60);
@@ -29,31 +31,11 @@ pub struct Browser {
     _profile: TempDir,
 }
 
-/// The program of the browser; `GYROCAL_CHROMIUM` names another one.
-fn program() -> Option<String> {
-    let named = std::env::var("GYROCAL_CHROMIUM").ok();
-    let usual = ["chromium", "chromium-browser", "google-chrome"];
-    let all = named.into_iter().chain(usual.map(str::to_owned));
-    all.into_iter().find(|name| {
-        let mut command = Command::new(name);
-        command
-            .arg("--version")
-            .stdout(Stdio::null())
-            .stderr(Stdio::null());
-        command.status().is_ok_and(|status| status.success())
-    })
-}
-
 impl Browser {
-    /// Starts a browser with a window of a size, px; `None`, told loudly, where there is none.
+    /// Starts a browser with a window of a size, px; `None` where there is none ([`tool`]).
+    #[track_caller]
     pub fn start(size: [u32; 2]) -> Option<Self> {
-        let Some(program) = program() else {
-            eprintln!(
-                "\nNO BROWSER HERE: pages are not tested. Install Debian's package `chromium`, or name a \
-                 program in GYROCAL_CHROMIUM.\n"
-            );
-            return None;
-        };
+        let program = tool(Tool::Chromium)?;
         let profile = tempfile::tempdir().unwrap();
         // The browser reads commands from descriptor 3 and answers on descriptor 4.
         let mut child = Command::new("sh")

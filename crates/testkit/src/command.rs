@@ -5,6 +5,7 @@ use std::sync::OnceLock;
 
 use crate::copy::workspace;
 use crate::files::fresh_directory;
+use crate::tools::{Tool, programs, tool};
 
 /// Outcome of a command.
 #[derive(Debug)]
@@ -120,41 +121,20 @@ pub fn tools_only(directory: PathBuf) -> PathBuf {
         link(&sysroot.join("bin").join(name), &directory.join(name));
     }
     for name in ["cc", "ld"] {
-        link(
-            &which(name).unwrap_or_else(|| panic!("no `{name}`")),
-            &directory.join(name),
-        );
+        let path = std::env::var_os("PATH").unwrap_or_default();
+        let found = programs(name, &path);
+        let first = found.first().unwrap_or_else(|| panic!("no `{name}`"));
+        link(first, &directory.join(name));
     }
     directory
 }
 
-/// A real interpreter for fakes to stand before.
+/// A real interpreter, not the shim of a version manager.
 pub fn system_python() -> PathBuf {
-    let names = [
-        "python3.11",
-        "python3.12",
-        "python3.13",
-        "python3.14",
-        "python3",
-    ];
-    let found = names
-        .iter()
-        .filter_map(|name| which(name))
-        .find_map(|python| {
-            let outcome =
-                run(Command::new(python).args(["-I", "-c", "import sys; print(sys.executable)"]));
-            outcome
-                .success
-                .then(|| PathBuf::from(outcome.stdout.trim()))
-        });
-    found.expect("a Python in PATH")
-}
-
-fn which(name: &str) -> Option<PathBuf> {
-    let path = std::env::var_os("PATH")?;
-    std::env::split_paths(&path)
-        .map(|directory| directory.join(name))
-        .find(|path| path.is_file())
+    let python = tool(Tool::Python).expect("a Python in PATH");
+    let executable = ["-I", "-c", "import sys; print(sys.executable)"];
+    let outcome = run(Command::new(python).args(executable)).succeeded();
+    PathBuf::from(outcome.stdout.trim())
 }
 
 fn link(original: &Path, link: &Path) {

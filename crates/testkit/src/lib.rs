@@ -1,7 +1,7 @@
 //! Shared support of tests, benches and figures; not part of the library.
 //!
 //! - Without features: copies of the workspace, small derivations, cargo and Python as a user would
-//!   have them, for tests of the build, and interleaved timing.
+//!   have them, for tests of the build, tools that a build does not bring (`tools`), and interleaved timing.
 //! - `filters`: a platform with any number of states, rounding errors against 400-bit references,
 //!   Kalman filters of other packages, and times of a step.
 //! - `browser`: a headless browser for pages.
@@ -64,9 +64,11 @@ pub mod step_times;
 pub mod strapdown_unit;
 pub mod timing;
 mod tiny;
+mod tools;
 
 pub use command::{Outcome, cargo, codegen, real_environments, run, system_python, tools_only};
 pub use copy::{WorkspaceCopy, workspace};
 pub use files::{edit, executable, fresh_directory, snapshot};
 pub use own_terms::{FoundParameter, FoundTerm, add_own_terms, code_block, find_own_terms};
 pub use tiny::TinyDerivation;
+pub use tools::{Tool, leave_out, python_with, tool};

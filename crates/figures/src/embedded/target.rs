@@ -1,52 +1,31 @@
-//! Tools that build for a Cortex-M4F and run it: packages of Debian.
+//! Tools that build for a Cortex-M4F and run it.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
+
+use gyrocal_testkit::{Tool, tool};
 
 use crate::error::Error;
 use crate::kernel::instructions::{output, root};
 
 const TRIPLE: &str = "thumbv7em-none-eabihf";
 const LINKER: &str = "arm-none-eabi-ld";
-const EMULATOR: &str = "qemu-system-arm";
-/// Packages that bring the tools.
-const PACKAGES: &str = "rustc-web rust-web-src gcc-arm-none-eabi qemu-system-arm";
-/// A compiler with the sources of `core`; that of Debian unless this variable names another.
-const VARIABLE: &str = "GYROCAL_TARGET_RUSTC";
-const COMPILER: &str = "/usr/bin/rustc";
 
 /// The tools, all of which are there.
 pub(super) struct Tools {
     compiler: PathBuf,
+    emulator: PathBuf,
 }
 
 impl Tools {
-    /// Finds the tools, or says what to install.
-    pub(super) fn find() -> Result<Self, String> {
-        let compiler = std::env::var_os(VARIABLE).map_or_else(|| COMPILER.into(), PathBuf::from);
-        let sysroot = output(Command::new(&compiler).args(["--print", "sysroot"]));
-        let sources = sysroot.ok().map(|sysroot| {
-            let library = Path::new(sysroot.trim()).join("lib/rustlib/src/rust/library");
-            library.join("core/src/lib.rs")
-        });
-        let lacks_sources = !sources.is_some_and(|sources| sources.exists());
-        let lacks = |tool: &str| output(Command::new(tool).arg("--version")).is_err();
-        let missing: Vec<&str> = [
-            (lacks_sources, "a compiler with the sources of core"),
-            (lacks(LINKER), LINKER),
-            (lacks("arm-none-eabi-gcc"), "arm-none-eabi-gcc"),
-            (lacks(EMULATOR), EMULATOR),
-        ]
-        .into_iter()
-        .filter_map(|(missing, tool)| missing.then_some(tool))
-        .collect();
-        if missing.is_empty() {
-            return Ok(Self { compiler });
-        }
-        Err(format!(
-            "{} missing; apt-get install {PACKAGES}",
-            missing.join(", ")
-        ))
+    /// Finds the tools; `None` if one is missing.
+    pub(super) fn find() -> Option<Self> {
+        // All are looked for: each that is missing is told.
+        let found = [Tool::TargetCompiler, Tool::Qemu, Tool::ArmGcc].map(tool);
+        let [Some(compiler), Some(emulator), Some(_)] = found else {
+            return None;
+        };
+        Some(Self { compiler, emulator })
     }
 
     /// Builds a package for the target; returns the directory of what was built.
@@ -85,7 +64,7 @@ impl Tools {
         };
         let semihosting = format!("enable=on,target=native{arguments}");
         output(
-            Command::new(EMULATOR)
+            Command::new(&self.emulator)
                 .args(["-M", "mps2-an386", "-nographic", "-monitor", "none"])
                 .args(["-serial", "none", "-icount", "shift=6,align=off,sleep=off"])
                 .args(["-semihosting-config", &semihosting])

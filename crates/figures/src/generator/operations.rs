@@ -16,13 +16,8 @@ const NODES: usize = 30_500;
 /// Of the exporter alone; the emission has a figure of its own.
 const MOST_EXPORT_S: f64 = 1.0;
 
-pub(crate) fn figures(directory: &Path) -> Result<Vec<Figure>, Error> {
-    let python = directory.join("env/bin/python");
-    if !python.is_file() {
-        let reason = "CasADi cannot be had".to_owned();
-        return Ok(vec![Figure::note("operations not compared", reason)]);
-    }
-    let mut figures = of_the_exporter(directory, &python)?;
+pub(crate) fn figures(directory: &Path, python: &Path) -> Result<Vec<Figure>, Error> {
+    let mut figures = of_the_exporter(directory, python)?;
     let data = directory.join("operations");
     let exporter = root().join("codegen/emit/exporter/run.py");
     let source = root().join("codegen/emit/tests/data/operations");

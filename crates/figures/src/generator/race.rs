@@ -1,8 +1,7 @@
 //! Emitted functions against those of wrenfold, SymForce and CasADi's C, in one program: value and
 //! Jacobians by reference, interleaved, minima over rounds.
 //!
-//! `peers.py` writes the functions with every generator, and the program. Generators come from PyPI
-//! into an environment of their own; where they cannot be had, nothing is judged. Ours are emitted in
+//! `peers.py` writes the functions with every generator, and the program. Ours are emitted in
 //! two forms: with fused multiply-adds, as gcc contracts CasADi's C and the sines of the system's
 //! library are, and with equal bits on every machine, the default.
 
@@ -12,9 +11,11 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
 
+use gyrocal_testkit::{Tool, tool};
+
 use crate::error::Error;
 use crate::figure::Figure;
-use crate::kernel::instructions::output;
+use crate::kernel::instructions::{instructions, output};
 
 const COMPETITORS: [&str; 3] = ["wrenfold", "symforce", "casadi"];
 const ROUNDS: usize = 1000;
@@ -70,16 +71,9 @@ impl Timed {
     }
 }
 
-/// The figures, and the interpreter of the private environment, if there is one.
-pub(crate) fn figures(directory: &Path) -> Result<Vec<Figure>, Error> {
-    let python = match contest::environment(directory) {
-        Ok(python) => python,
-        Err(error) => {
-            let reason = format!("competitors cannot be had: {error}");
-            return Ok(vec![Figure::note("generators not compared", reason)]);
-        }
-    };
-    let source = contest::written(directory, &python)?;
+/// The figures; the other generators are packages of this interpreter.
+pub(crate) fn figures(directory: &Path, python: &Path) -> Result<Vec<Figure>, Error> {
+    let source = contest::written(directory, python)?;
     let mut figures = Vec::new();
     for form in [Form::Fused, Form::EqualBits] {
         let contest = contest::built(&source, form)?;
@@ -156,25 +150,13 @@ fn of_times(form: Form, timed: &[Timed]) -> Vec<Figure> {
 
 /// Instructions of ours over those of the best competitor, of all calls of a run.
 fn of_instructions(form: Form, program: &Path, timed: &[Timed]) -> Result<Vec<Figure>, Error> {
-    if output(Command::new("valgrind").arg("--version")).is_err() {
-        let reason = "valgrind is not installed".to_owned();
-        return Ok(vec![Figure::note(
-            &format!("{}: instructions not counted", form.name()),
-            reason,
-        )]);
-    }
-    let count = |function: &str, contender: &str| -> Result<f64, Error> {
-        let report = output(
-            Command::new("valgrind")
-                .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
-                .arg(program)
-                .args([&COUNTED.to_string(), function, contender]),
-        )?;
-        let line = report
-            .lines()
-            .find_map(|line| line.split_once("Collected :"));
-        let (_, count) = line.ok_or("callgrind printed no line `Collected :`")?;
-        Ok(count.trim().parse()?)
+    let Some(valgrind) = tool(Tool::Valgrind) else {
+        let what = format!("{}: instructions not counted", form.name());
+        return Ok(vec![Figure::note(&what, Tool::Valgrind.missing())]);
+    };
+    let calls = COUNTED.to_string();
+    let count = |function: &str, contender: &str| {
+        instructions(&valgrind, program, &[&calls, function, contender])
     };
     let mut figures = Vec::new();
     for line in timed.iter().filter(|line| line.angle == "0.6") {

@@ -7,6 +7,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use gyrocal_testkit::{Tool, tool};
 use serde::{Deserialize, Serialize};
 
 use super::{Error, RULES};
@@ -123,17 +124,15 @@ fn counted() -> Result<Result<Counted, String>, Error> {
             "they belong to a plain build, and {flags} is set"
         )));
     }
-    if output(Command::new("valgrind").arg("--version")).is_err() {
-        return Ok(Err(
-            "valgrind is not installed: apt-get install valgrind".to_owned()
-        ));
-    }
+    let Some(valgrind) = tool(Tool::Valgrind) else {
+        return Ok(Err(Tool::Valgrind.missing()));
+    };
     let compiler = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
     let rustc = output(Command::new(compiler).arg("--version"))?
         .trim()
         .to_owned();
-    let [euler, rk4] = counts_of("filter_steps")?;
-    let factors = counts_of("factorised_steps")?;
+    let [euler, rk4] = counts_of(&valgrind, "filter_steps")?;
+    let factors = counts_of(&valgrind, "factorised_steps")?;
     let target = format!("{} {}", std::env::consts::ARCH, std::env::consts::OS);
     let counts = Counts {
         rustc,
@@ -145,14 +144,12 @@ fn counted() -> Result<Result<Counted, String>, Error> {
 }
 
 /// Instructions of a step of an example, by rule.
-fn counts_of(example: &str) -> Result<[f64; 2], Error> {
+fn counts_of(valgrind: &Path, example: &str) -> Result<[f64; 2], Error> {
     let program = built(example)?;
     let mut counts = [0.0_f64; 2];
     for (count, (rule, _)) in counts.iter_mut().zip(RULES) {
-        let [few, many] = [
-            instructions(&program, rule, STEPS[0])?,
-            instructions(&program, rule, STEPS[1])?,
-        ];
+        let of = |steps: u32| instructions(valgrind, &program, &[rule, &steps.to_string()]);
+        let [few, many] = [of(STEPS[0])?, of(STEPS[1])?];
         *count = ((many - few) / f64::from(STEPS[1] - STEPS[0])).round();
     }
     Ok(counts)
@@ -173,13 +170,17 @@ fn built(example: &str) -> Result<PathBuf, Error> {
     path.ok_or_else(|| format!("cargo built no example {example}").into())
 }
 
-/// All instructions of a run of that many steps.
-fn instructions(program: &Path, rule: &str, steps: u32) -> Result<f64, Error> {
+/// All instructions of a run of a program, counted by callgrind.
+pub(crate) fn instructions(
+    valgrind: &Path,
+    program: &Path,
+    arguments: &[&str],
+) -> Result<f64, Error> {
     let report = output(
-        Command::new("valgrind")
+        Command::new(valgrind)
             .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
             .arg(program)
-            .args([rule, &steps.to_string()]),
+            .args(arguments),
     )?;
     let collected = report
         .lines()

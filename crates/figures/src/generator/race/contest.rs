@@ -1,5 +1,4 @@
-//! The program in which functions of several generators are timed: its private environment, its
-//! source, its build.
+//! The program in which functions of several generators are timed: its source, its build.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -12,35 +11,6 @@ use crate::kernel::instructions::{cargo, output, root};
 use crate::kernel::speed::has_x86_64_v3;
 
 const PEERS: &str = include_str!("../peers.py");
-const PACKAGES: [&str; 3] = ["wrenfold==0.5.3", "symforce==0.12.0", "casadi==3.8.2"];
-
-/// The interpreter of the private environment.
-pub(super) fn environment(directory: &Path) -> Result<PathBuf, Error> {
-    let environment = directory.join("env");
-    let python = environment.join("bin/python");
-    let done = environment.join("complete");
-    if !done.is_file() {
-        std::fs::create_dir_all(directory)?;
-        output(
-            Command::new("python3")
-                .args(["-m", "venv"])
-                .arg(&environment),
-        )?;
-        output(
-            Command::new(&python)
-                .args([
-                    "-m",
-                    "pip",
-                    "install",
-                    "--quiet",
-                    "--disable-pip-version-check",
-                ])
-                .args(PACKAGES),
-        )?;
-        std::fs::write(done, "")?;
-    }
-    Ok(python)
-}
 
 /// A program with the functions of every generator.
 pub(super) struct Contest {
