@@ -147,3 +147,64 @@ fn libraries() -> Result<String, EmitError> {
     ];
     Ok(modules.join("\n"))
 }
+
+#[cfg(test)]
+#[allow(
+    clippy::unwrap_used,
+    reason = "a test may stop at what must not happen"
+)]
+mod tests {
+    use super::*;
+
+    /// Modules of the example package with their effects.
+    const EXTENDED: (&str, &str) = (
+        include_str!("../../../examples/extended/src/generated/extended.rs"),
+        "gyro_y.g_z",
+    );
+    const UNIT: (&str, &str) = (
+        include_str!("../../../examples/extended/src/generated/unit.rs"),
+        "gyro_y.ramp",
+    );
+
+    fn refused(gyros: Gyros, name: &str, (module, effect): (&str, &str)) -> EmitError {
+        let model = ModelFile {
+            gyros,
+            effects: vec![effect.to_owned()],
+            ..ModelFile::default()
+        };
+        let extension = Extension {
+            model: &model,
+            name,
+            module,
+        };
+        let emission = Emission {
+            number: Number::F32,
+            extension: Some(extension),
+        };
+        emission.write().unwrap_err()
+    }
+
+    #[test]
+    fn a_module_of_another_model_is_refused() {
+        let error = refused(Gyros::Platform, "other", EXTENDED);
+        assert!(matches!(error, EmitError::Module { .. }));
+    }
+
+    #[test]
+    fn a_module_with_other_gyros_is_refused_in_words() {
+        for (gyros, name, module, found, expected) in [
+            (Gyros::Platform, "unit", UNIT, "strapdown", "platform"),
+            (
+                Gyros::Strapdown,
+                "extended",
+                EXTENDED,
+                "platform",
+                "strapdown",
+            ),
+        ] {
+            let said = refused(gyros, name, module).to_string();
+            let words = format!("{name}.rs: found gyros that are `{found}`, expected `{expected}`");
+            assert!(said.starts_with(&words), "{said}");
+        }
+    }
+}

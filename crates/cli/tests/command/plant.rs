@@ -45,7 +45,7 @@ fn the_answer_for_programs_names_the_cause_and_its_set() {
 }
 
 #[test]
-fn a_new_package_is_derived_diagnosed_and_extended() {
+fn a_new_package_is_written_once_and_names_its_tree() {
     let folder = Folder::new();
     let tree = repository("").display().to_string();
     folder.succeed(&["new-plant", "oscillator", "--gyrocal", &tree]);
@@ -61,38 +61,6 @@ fn a_new_package_is_derived_diagnosed_and_extended() {
         nowhere.contains("give the root of a tree of gyrocal"),
         "{nowhere}"
     );
-
-    let script = "oscillator/plant.py";
-    folder.succeed(&["plant", "derive", script]);
-    let example = |name: &str| {
-        repository(&format!("examples/duffing/{name}"))
-            .display()
-            .to_string()
-    };
-    // The package begins with the oscillator of the example.
-    let diagnose = |json: &str| {
-        folder.succeed(&[
-            "plant",
-            "diagnose",
-            "oscillator/plant.json",
-            &example("record.csv"),
-            "--columns",
-            "oscillator/columns.toml",
-            "--json",
-            json,
-        ]);
-        let answer: serde_json::Value = serde_json::from_str(&folder.text(json)).unwrap();
-        answer["findings"].as_array().unwrap().len()
-    };
-    assert_eq!(diagnose("d.json"), 1);
-    folder.succeed(&["plant", "extend", "d.json", "--script", script]);
-    assert!(
-        folder
-            .text(script)
-            .contains("    plant.extend(\"v_rate.x^3\", -0.05")
-    );
-    folder.succeed(&["plant", "derive", script]);
-    assert_eq!(diagnose("e.json"), 0);
 }
 
 #[test]

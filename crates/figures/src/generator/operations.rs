@@ -115,7 +115,8 @@ fn tested(data: &Path) -> Result<String, Error> {
                 "--package",
                 "gyrocal-codegen",
             ])
-            .args(["--test", "emit_operations", "--", "--nocapture"])
+            .args(["--features", "slow", "--test", "slow"])
+            .args(["operations", "--", "--nocapture"])
             .env("GYROCAL_OPERATIONS_DATA", data),
     )
 }

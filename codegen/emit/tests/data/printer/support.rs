@@ -1,4 +1,4 @@
-//! Functions called by the printing program of `emit_compiled.rs`.
+//! Functions called by the printing program of `slow/compiled.rs`.
 
 use gyrocal_scalar::{Model, RatesJacobian};
 

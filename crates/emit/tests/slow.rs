@@ -8,7 +8,7 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use gyrocal_emit::{Emission, EmitError, Extension, Number};
+use gyrocal_emit::{Emission, Extension, Number};
 use gyrocal_record::{Gyros, ModelFile, ParameterEstimate};
 
 /// The module that the example package has derived, which has one effect.
@@ -155,48 +155,4 @@ fn a_changed_step_fails_the_tests_of_the_file() {
     let tests = run_tests(&text.replace(held, "const HELD_S: f64 = 60.6;"));
     assert!(!tests.status.success());
     assert!(said(&tests).contains("parameter"), "{}", said(&tests));
-}
-
-#[test]
-fn a_module_of_another_model_is_refused() {
-    let model = model();
-    let extension = Extension {
-        model: &model,
-        name: "other",
-        module: MODULE,
-    };
-    let emission = Emission {
-        number: Number::F32,
-        extension: Some(extension),
-    };
-    assert!(matches!(emission.write(), Err(EmitError::Module { .. })));
-}
-
-#[test]
-fn a_module_with_other_gyros_is_refused_in_words() {
-    let platform = ModelFile {
-        gyros: Gyros::Platform,
-        ..unit_model()
-    };
-    let strapdown = ModelFile {
-        gyros: Gyros::Strapdown,
-        ..model()
-    };
-    for (model, name, module, found, expected) in [
-        (platform, "unit", UNIT_MODULE, "strapdown", "platform"),
-        (strapdown, "extended", MODULE, "platform", "strapdown"),
-    ] {
-        let extension = Extension {
-            model: &model,
-            name,
-            module,
-        };
-        let emission = Emission {
-            number: Number::F32,
-            extension: Some(extension),
-        };
-        let said = emission.write().unwrap_err().to_string();
-        let words = format!("{name}.rs: found gyros that are `{found}`, expected `{expected}`");
-        assert!(said.starts_with(&words), "{said}");
-    }
 }

@@ -1,5 +1,4 @@
 //! Writing and checking the committed files.
-#![allow(clippy::unwrap_used, clippy::expect_used)]
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -7,7 +6,7 @@ use std::path::{Path, PathBuf};
 use gyrocal_codegen::build::Derivation;
 use gyrocal_testkit::{TinyDerivation, codegen, edit, fresh_directory, run, snapshot, workspace};
 
-const SCRATCH: &str = env!("CARGO_TARGET_TMPDIR");
+use crate::SCRATCH;
 
 #[test]
 fn a_damaged_or_missing_file_is_named_with_the_command() {

@@ -1,5 +1,4 @@
 //! Each failure has one message that says what to do, and leaves everything as it was.
-#![allow(clippy::unwrap_used, clippy::expect_used)]
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -10,7 +9,7 @@ use gyrocal_testkit::{
     snapshot, system_python,
 };
 
-const SCRATCH: &str = env!("CARGO_TARGET_TMPDIR");
+use crate::SCRATCH;
 
 /// A tiny derivation, and an empty directory for environments.
 struct Case {

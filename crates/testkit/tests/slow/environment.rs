@@ -1,5 +1,4 @@
 //! The private environment: made once, whole, and from nothing but the lock file.
-#![allow(clippy::unwrap_used, clippy::expect_used)]
 
 use std::fs;
 use std::path::Path;
@@ -8,7 +7,7 @@ use gyrocal_testkit::{
     TinyDerivation, codegen, fresh_directory, real_environments, run, snapshot, system_python,
 };
 
-const SCRATCH: &str = env!("CARGO_TARGET_TMPDIR");
+use crate::SCRATCH;
 
 fn entries(directory: &Path) -> Vec<String> {
     let names = fs::read_dir(directory).unwrap();

@@ -1,5 +1,4 @@
 //! Builds of a copy of the whole workspace with cargo, as a user starts them.
-#![allow(clippy::unwrap_used, clippy::expect_used)]
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -11,7 +10,7 @@ use gyrocal_testkit::{
     real_environments, run, snapshot, tools_only,
 };
 
-const SCRATCH: &str = env!("CARGO_TARGET_TMPDIR");
+use crate::SCRATCH;
 
 /// Prints the rates of drift by the squares of specific force alone, each with its
 /// derivatives by the coefficients.

@@ -1,5 +1,4 @@
 //! Variants: programs defined by files of other packages.
-#![allow(clippy::unwrap_used, clippy::expect_used)]
 
 use std::fs;
 use std::path::PathBuf;
@@ -7,7 +6,7 @@ use std::path::PathBuf;
 use gyrocal_codegen::build::{Settings, Variant};
 use gyrocal_testkit::{TinyDerivation, edit, real_environments, workspace};
 
-const SCRATCH: &str = env!("CARGO_TARGET_TMPDIR");
+use crate::SCRATCH;
 
 /// Function of a tiny derivation that serves other packages; their file holds a factor.
 const DERIVE_FROM: &str = r#"

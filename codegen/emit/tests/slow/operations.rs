@@ -1,10 +1,5 @@
 //! Every operation at its edges, and random expression graphs: the emitted Rust, compiled, gives the
 //! numbers of CasADi, those of the interpreter bit by bit, and in `f32` those of `f64` to rounding.
-#![allow(clippy::unwrap_used, clippy::expect_used)]
-
-mod common;
-#[path = "common/evaluated.rs"]
-mod evaluated;
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -13,6 +8,8 @@ use std::process::Command;
 use gyrocal_codegen::ir::{Expressions, lower};
 use gyrocal_codegen::{Options, Program, emit_module, emit_module_with};
 use gyrocal_oracle::rounding::{ROUNDOFF_F32, ROUNDOFF_F64, RunningError};
+
+use crate::{common, evaluated};
 
 /// The data, or those of `cargo figures kernel --part generator`, which are more.
 fn data(file: &str) -> String {

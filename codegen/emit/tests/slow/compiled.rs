@@ -1,7 +1,4 @@
 //! Emitted modules, compiled without the standard library and run: CasADi's own numbers.
-#![allow(clippy::unwrap_used, clippy::expect_used)]
-
-mod common;
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -11,6 +8,8 @@ use std::process::Command;
 use gyrocal_codegen::program::{Function, Output};
 use gyrocal_codegen::{Program, emit_module};
 use serde::Deserialize;
+
+use crate::common;
 
 /// Points of the reference that are compared: each is a line of source to compile.
 const POINTS: usize = 10;
