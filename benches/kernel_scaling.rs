@@ -1,6 +1,6 @@
 //! Cost of one filter step against the number of states n: three moving, the rest constant
 //! parameters in vectors of run-time length. `cargo figures kernel --part filter` holds it against n².
-#![allow(clippy::unwrap_used, missing_docs)]
+#![expect(clippy::unwrap_used, reason = "a bench stops at what fails")]
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};

@@ -1,6 +1,6 @@
 //! The generated model against the independent simulator `gyrocal-truth`, which carries one
 //! quaternion against inertial space and knows no Euler angle, no chart and no generated code.
-#![allow(clippy::unwrap_used, clippy::expect_used)]
+#![cfg(test)]
 
 use gyrocal::scalar::Model;
 use gyrocal::{

@@ -1,6 +1,6 @@
 //! The filter of a controller: refusals leave it as it was, a saved state continues bit by bit, and
 //! single precision follows double.
-#![allow(clippy::unwrap_used, clippy::expect_used)]
+#![cfg(test)]
 
 use gyrocal::estimation::form::Form;
 use gyrocal::estimation::{Covariance, Factors};

@@ -1,9 +1,6 @@
 //! Filters on the extended models, and the charts that give them their inputs.
 #![cfg(feature = "catalogue")]
-#![allow(
-    clippy::unwrap_used,
-    reason = "a test may stop at what must not happen"
-)]
+#![cfg(test)]
 
 use gyrocal::estimation::{Filter, VecStorage};
 use gyrocal::generated::catalogue::{CatalogueInputs, conditions_index, parameters_index};

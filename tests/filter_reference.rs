@@ -1,5 +1,5 @@
 //! The streaming filter's kernel against the textbook dense filter on the platform model.
-#![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
+#![cfg(test)]
 
 use chacha20::ChaCha12Rng;
 use gyrocal::estimation::dense::DenseFilter;

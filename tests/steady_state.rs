@@ -2,7 +2,7 @@
 //!
 //! `allocation-counter` replaces the allocator of this test binary only, counts by thread, and
 //! needs no unsafe code here.
-#![allow(clippy::unwrap_used, clippy::expect_used)]
+#![cfg(test)]
 
 use std::hint::black_box;
 

@@ -1,6 +1,6 @@
 //! The watch beside the filter: it finds the effects of an independent simulator with their size and
 //! onset.
-#![allow(clippy::unwrap_used, clippy::expect_used)]
+#![cfg(test)]
 
 use gyrocal::watch::{Candidate, EFFECTS_BY_DEFAULT, PlatformWatch, WatchSettings};
 use gyrocal::{ControllerError, FilterSettings, InitialAttitude, Limits, SavedNumber, Site};

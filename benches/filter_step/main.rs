@@ -6,7 +6,7 @@
 //! `adskalman` and `multicalc` are Joseph-form filters of other packages on the same generated
 //! functions, of the Euler step only: with Runge-Kutta they would take the same dense step after
 //! the same transition. Compare within one run only; `cargo figures kernel --part filter` judges the ratios.
-#![allow(clippy::unwrap_used, missing_docs)]
+#![expect(clippy::unwrap_used, reason = "a bench stops at what fails")]
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};

@@ -1,4 +1,4 @@
-#![allow(
+#![expect(
     clippy::needless_range_loop,
     reason = "loops over several matrices by one index read like the equations"
 )]

@@ -8,7 +8,7 @@
 //! written again with the generated code.
 // The written-out RK4 step, the programs and the catalogue are behind features.
 #![cfg(all(feature = "oracle", feature = "catalogue"))]
-#![allow(clippy::unwrap_used, clippy::expect_used)]
+#![cfg(test)]
 
 mod callable;
 mod casadi;

@@ -1,5 +1,5 @@
 //! Every fault of a program has a message with where, found, expected and what to do.
-#![allow(clippy::unwrap_used, clippy::expect_used)]
+#![cfg(test)]
 
 mod common;
 

@@ -1,5 +1,5 @@
 //! The account of a function.
-#![allow(clippy::unwrap_used, clippy::expect_used)]
+#![cfg(test)]
 
 mod common;
 

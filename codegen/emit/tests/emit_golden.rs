@@ -1,5 +1,5 @@
 //! The emitted module of a small program, byte by byte.
-#![allow(clippy::unwrap_used, clippy::expect_used)]
+#![cfg(test)]
 
 mod common;
 

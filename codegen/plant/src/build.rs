@@ -69,7 +69,7 @@ fn build_in(script: &Path, out_dir: &Path) -> Result<(), Error> {
     let [rust, program] = &texts;
     let module = format!(
         "/// The functions of the plant.\n#[rustfmt::skip]\n#[allow(missing_docs, unreachable_pub, \
-         dead_code, clippy::all)]\nmod generated {{\n    include!(concat!(env!(\"OUT_DIR\"), \
+         dead_code, clippy::all, clippy::too_many_lines, reason = \"generated for every use\")]\nmod generated {{\n    include!(concat!(env!(\"OUT_DIR\"), \
          \"/generated.rs\"));\n}}\n\n/// The plant, with generated functions.\n///\n/// # Errors\n/// If \
          the program is not one of a plant.\npub fn plant() -> \
          Result<::gyrocal_plant::LoadedPlant, ::gyrocal_plant::PlantError> {{\n    \

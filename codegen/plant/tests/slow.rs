@@ -1,5 +1,5 @@
 //! Scripts that are derived, and scripts that are refused.
-#![allow(clippy::unwrap_used)]
+#![cfg(test)]
 
 use std::path::{Path, PathBuf};
 

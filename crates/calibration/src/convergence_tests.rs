@@ -1,5 +1,4 @@
 //! Convergence from poor initial guesses, and failures of the iteration.
-#![allow(clippy::unwrap_used)]
 
 use gyrocal::generated::surveyed::SurveyedInputs;
 use gyrocal::{Anchored, Discretisation, FilterSettings, Surveyed};

@@ -227,7 +227,6 @@ impl PlannedRun<'_> {
 }
 
 #[cfg(test)]
-#[allow(clippy::unwrap_used)] // tests stop where they fail
 mod tests {
     use gyrocal::Catalogue;
     use gyrocal::trajectory::rotation_between;

@@ -76,7 +76,10 @@ pub(crate) enum Evaluation {
 }
 
 impl<'a> Evaluator<'a> {
-    #[allow(clippy::too_many_arguments)]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "what one plan is made of, put together in one place"
+    )]
     pub(crate) fn new(
         unknowns: &'a JointUnknowns,
         fitted: &FittedPlatform<'_>,

@@ -1,5 +1,5 @@
 //! Planned runs of a strapdown unit: logs simulated in the planned attitude and imported agree with the predictions.
-#![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
+#![cfg(test)]
 
 use gyrocal_calibration::{
     FittedPlatform, GyroAxes, NoiseModel, Options, Run, calibrate_strapdown,

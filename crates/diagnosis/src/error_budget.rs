@@ -172,7 +172,9 @@ pub const TABLE: [Line; 16] = [
         test: "confidence set",
         value: CONFIDENCE_SET_DEVIANCE,
         meaning: "largest difference of penalised statistics within the set",
-        origin: Origin::Calibrated("`cargo figures diagnosis --part naming`: 95 % coverage at 5 sigma"),
+        origin: Origin::Calibrated(
+            "`cargo figures diagnosis --part naming`: 95 % coverage at 5 sigma",
+        ),
     },
     Line {
         test: "cross-validation",
@@ -233,7 +235,6 @@ mod tests {
     }
 
     #[test]
-    #[allow(clippy::unwrap_used)]
     fn the_documentation_prints_this_table() {
         let page = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/method.md");
         let page = std::fs::read_to_string(page).unwrap().replace("\r\n", "\n");

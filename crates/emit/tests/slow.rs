@@ -1,9 +1,5 @@
 //! Emitted files compile by themselves, and their tests pass.
-#![allow(
-    clippy::unwrap_used,
-    clippy::expect_used,
-    reason = "a test may stop at what must not happen"
-)]
+#![cfg(test)]
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

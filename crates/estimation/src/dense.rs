@@ -199,7 +199,6 @@ where
     }
 
     /// Rates with their Jacobians by moving states, all states (parameters only), and noise.
-    #[allow(clippy::type_complexity)] // four results of one evaluation, named in the doc
     fn rates(
         &self,
         moving: &SVector<f64, M>,

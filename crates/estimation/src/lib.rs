@@ -109,7 +109,7 @@
 //! It never repairs a covariance, never allocates in a step, and is independent of the model.
 
 #![no_std]
-#![allow(
+#![expect(
     clippy::needless_range_loop,
     reason = "loops over several matrices by one index read like the equations"
 )]

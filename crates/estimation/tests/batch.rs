@@ -1,15 +1,15 @@
 //! The batch estimator on a model that has nothing to do with gyros, against dense least squares
 //! and direct Gaussian densities.
 // Failing here is what tests are for.
-#![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
-#![allow(
+#![cfg(test)]
+#![expect(
     clippy::needless_range_loop,
     reason = "loops over several matrices by one index read like the equations"
 )]
 
 #[path = "batch/chain.rs"]
 mod chain;
-#[allow(dead_code, reason = "some constants are those of other tests")]
+#[expect(dead_code, reason = "some constants are those of other tests")]
 mod common;
 #[path = "batch/density.rs"]
 mod density;

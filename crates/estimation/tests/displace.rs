@@ -1,5 +1,5 @@
 //! Variance added along a direction, in both forms, against the definition; clipped innovations.
-#![allow(clippy::unwrap_used)]
+#![cfg(test)]
 
 use gyrocal_estimation::form::Form;
 use gyrocal_estimation::{ArrayStorage, Covariance, Factors, Filter, Integration, Recentring};

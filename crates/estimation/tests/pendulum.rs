@@ -1,6 +1,6 @@
 //! The structured filter against the dense textbook filter on a model of another kind:
 //! parameters in the output, noise of its own, flat state space.
-#![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
+#![cfg(test)]
 
 mod common;
 

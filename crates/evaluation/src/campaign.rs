@@ -153,8 +153,10 @@ impl Campaign {
         let one = |seed: u64| {
             let finished = job(seed).map_err(|error| one_line(&*error.into()));
             let (line, finished) = encode(seed, &finished)?;
-            // Only a panic poisons it, and rayon carries a panic on to the caller.
-            #[allow(clippy::unwrap_used)]
+            #[expect(
+                clippy::unwrap_used,
+                reason = "only a panic poisons it, and rayon carries a panic on to the caller"
+            )]
             collector.lock().unwrap().accept(&line, finished.is_err())?;
             Ok((seed, finished))
         };

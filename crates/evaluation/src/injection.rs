@@ -253,5 +253,4 @@ fn own_information(
 }
 
 #[cfg(test)]
-#[allow(clippy::unwrap_used)]
 mod tests;

@@ -259,7 +259,6 @@ fn injected_score(effect: &UnlistedEffect, strength: f64) -> InjectedScore {
 }
 
 #[cfg(test)]
-#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
     use crate::scenario::scenario;

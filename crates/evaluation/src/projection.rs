@@ -199,7 +199,6 @@ impl ProjectedScores {
 }
 
 #[cfg(test)]
-#[allow(clippy::unwrap_used)]
 mod tests {
     use gyrocal::EFFECTS;
     use gyrocal_hypothesis::ModelExtension;

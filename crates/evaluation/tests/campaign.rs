@@ -1,7 +1,7 @@
 //! Campaigns: the same results whatever the threads and however often they were stopped.
 
 // Failing here is what tests are for.
-#![allow(clippy::unwrap_used, clippy::expect_used)]
+#![cfg(test)]
 
 use std::fs::{self, File};
 use std::num::NonZeroUsize;

@@ -1,5 +1,5 @@
 //! Records that are hard to diagnose.
-#![allow(clippy::unwrap_used, missing_docs)]
+#![cfg(test)]
 
 use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
 use gyrocal_evaluation::{PopulationCell, RecordScore, UnlistedEffect, UnlistedRecord, scenario};

@@ -146,7 +146,6 @@ impl Section {
 }
 
 #[cfg(test)]
-#[allow(clippy::unwrap_used, reason = "a failure here is a failed test")]
 mod tests {
     use std::path::Path;
 

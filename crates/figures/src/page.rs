@@ -153,7 +153,6 @@ fn number(text: &str) -> Option<(usize, f64, f64)> {
 }
 
 #[cfg(test)]
-#[allow(clippy::expect_used, reason = "a failure here is a failed test")]
 mod tests {
     use super::*;
 

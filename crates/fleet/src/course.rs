@@ -115,7 +115,6 @@ pub(crate) fn courses(units: &[Vec<Point>]) -> Option<Courses> {
 }
 
 #[cfg(test)]
-#[allow(clippy::unwrap_used)] // tests stop where they fail
 mod tests {
     use super::*;
 

@@ -202,7 +202,6 @@ impl RandomEffects {
 }
 
 #[cfg(test)]
-#[allow(clippy::unwrap_used)] // tests stop where they fail
 mod tests {
     use super::*;
 

@@ -133,7 +133,6 @@ pub fn from_bytes(bytes: &[u8]) -> Result<ScoreTable, FleetError> {
 }
 
 #[cfg(test)]
-#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
 

@@ -1,6 +1,6 @@
 //! The search on another plant: a Duffing oscillator with one output, described by data and one
 //! trait, as a user's plant would be.
-#![allow(clippy::unwrap_used)]
+#![cfg(test)]
 
 #[path = "duffing/plant.rs"]
 mod plant;

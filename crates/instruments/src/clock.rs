@@ -142,7 +142,6 @@ pub(crate) fn resampled(time_s: &[f64], samples: &[[f64; 3]], at_s: &[f64]) -> V
 }
 
 #[cfg(test)]
-#[allow(clippy::expect_used, reason = "a failure here is a failed test")]
 mod tests {
     use super::*;
 

@@ -62,7 +62,6 @@ fn is_accelerometer(name: &str, axis: char) -> bool {
 }
 
 #[cfg(test)]
-#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
 

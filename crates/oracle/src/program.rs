@@ -108,7 +108,7 @@ pub enum Instruction {
 /// Operations on one scalar, by their names in the schema.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
-#[allow(missing_docs, reason = "the names say it")]
+#[expect(missing_docs, reason = "the names say it")]
 pub enum Unary {
     Neg,
     Sq,
@@ -144,7 +144,7 @@ pub enum Unary {
 /// Operations on two scalars, by their names in the schema.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
-#[allow(missing_docs, reason = "the names say it")]
+#[expect(missing_docs, reason = "the names say it")]
 pub enum Binary {
     Add,
     Sub,

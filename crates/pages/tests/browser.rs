@@ -1,5 +1,5 @@
 //! Pages in a real browser: nothing fetched, no error, the answer on the first screen, zoom, paper.
-#![allow(clippy::unwrap_used)]
+#![cfg(test)]
 
 use std::path::PathBuf;
 

@@ -53,7 +53,6 @@ fn unreadable(path: &Path, reason: io::Error) -> Error {
 }
 
 #[cfg(test)]
-#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
     use std::io::Write;

@@ -150,7 +150,6 @@ fn window(line: &str, from: usize) -> (String, usize) {
 }
 
 #[cfg(test)]
-#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
 

@@ -1,6 +1,6 @@
 //! Each way in which a bench file can be wrong.
 
-#![allow(clippy::unwrap_used, clippy::expect_used)]
+#![cfg(test)]
 
 use gyrocal_record::{Bench, Error, InputErrorKind};
 

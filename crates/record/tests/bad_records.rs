@@ -1,6 +1,6 @@
 //! Each way in which a record can be wrong: place, what was found, what was expected.
 
-#![allow(clippy::unwrap_used, clippy::expect_used)]
+#![cfg(test)]
 
 use gyrocal_record::{Error, InputError, InputErrorKind, Record, SourceText};
 use miette::Diagnostic as _;

@@ -1,6 +1,6 @@
 //! Model files: round trips, and each way in which one can be wrong.
 
-#![allow(clippy::unwrap_used, clippy::expect_used)]
+#![cfg(test)]
 
 use std::path::Path;
 

@@ -147,7 +147,6 @@ impl Picture for Estimates {
 }
 
 #[cfg(test)]
-#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
     use crate::page::{Bar, BarGroup, EstimateRow, Tint, ValueWithSigma};

@@ -234,7 +234,6 @@ impl Panel {
 }
 
 #[cfg(test)]
-#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
     use crate::page::{Band, Level, Mark, Tint};

@@ -1,10 +1,6 @@
 //! Every picture as SVG: what it says, how large it is, what it does with bad or missing data.
 
-#![allow(
-    clippy::unwrap_used,
-    clippy::expect_used,
-    reason = "a failure here is a failed test"
-)]
+#![cfg(test)]
 
 mod samples;
 

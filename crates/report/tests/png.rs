@@ -1,11 +1,7 @@
 //! PNG from SVG: size, content, and the letters of the embedded font.
 
 #![cfg(feature = "png")]
-#![allow(
-    clippy::unwrap_used,
-    clippy::expect_used,
-    reason = "a failure here is a failed test"
-)]
+#![cfg(test)]
 
 mod samples;
 

@@ -9,7 +9,7 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 /// If `degrees_of_freedom` is not positive.
 #[must_use]
 pub fn chi_square_band(degrees_of_freedom: f64, false_alarm: f64) -> [f64; 2] {
-    #[allow(clippy::expect_used)] // documented under # Panics
+    #[expect(clippy::expect_used, reason = "documented under # Panics")]
     let distribution =
         ChiSquared::new(degrees_of_freedom).expect("degrees of freedom must be positive");
     [

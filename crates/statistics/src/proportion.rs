@@ -146,7 +146,10 @@ impl Proportion {
 /// The quantile of a beta distribution. Bisection on the distribution function, to the last bit:
 /// library quantiles are approximate, and one wrong in the fifth digit decides tests.
 fn beta_quantile(a: f64, b: f64, share: f64) -> f64 {
-    #[allow(clippy::expect_used)] // counts of hits and misses, at least one of each
+    #[expect(
+        clippy::expect_used,
+        reason = "counts of hits and misses, at least one of each"
+    )]
     let distribution = Beta::new(a, b).expect("positive counts");
     let (mut low, mut high) = (0.0, 1.0);
     loop {

@@ -18,12 +18,13 @@
 //!
 //! Each module has more than one user among tests, benches and `cargo figures`; support of a single test
 //! stays with that test. Helpers panic when the machine lacks something: that is how a test fails.
-#![allow(
+#![expect(
     clippy::unwrap_used,
     clippy::expect_used,
     clippy::missing_panics_doc,
     clippy::missing_errors_doc,
-    clippy::must_use_candidate
+    clippy::must_use_candidate,
+    reason = "a panic of a helper is how its test fails"
 )]
 
 #[cfg(feature = "setups")]

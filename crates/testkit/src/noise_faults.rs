@@ -39,7 +39,10 @@ pub struct FaultyRecord {
 }
 
 /// Record `number` of a population, with a fault and with hidden terms.
-#[allow(clippy::collapsible_match)] // a guard that draws a random number hides it
+#[expect(
+    clippy::collapsible_match,
+    reason = "a guard that draws a random number hides it"
+)]
 pub fn faulty_record(
     population: &Population,
     number: u64,

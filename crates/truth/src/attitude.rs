@@ -189,7 +189,6 @@ pub(crate) fn norm(a: [f64; 3]) -> f64 {
 }
 
 #[cfg(test)]
-#[allow(clippy::unwrap_used, clippy::expect_used)]
 mod tests {
     use super::*;
 

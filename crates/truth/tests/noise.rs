@@ -1,6 +1,6 @@
 //! Noise has the declared size, and each purpose has its own random numbers.
 
-#![allow(clippy::unwrap_used, clippy::expect_used)]
+#![cfg(test)]
 
 use gyrocal_truth::{Attitude, Coefficients, Scenario, Simulation, simulate};
 

@@ -1,6 +1,6 @@
 //! Against a record that another simulator made, and the coefficients that it was made with.
 
-#![allow(clippy::unwrap_used, clippy::expect_used)]
+#![cfg(test)]
 
 use std::path::Path;
 

@@ -1,6 +1,6 @@
 //! Scenarios: files, populations, the Euler rule, hidden terms, and the bits of a record.
 
-#![allow(clippy::unwrap_used, clippy::expect_used)]
+#![cfg(test)]
 
 use std::path::Path;
 

@@ -6,7 +6,7 @@
 //! signatures that all share ([`Lane`]). Effects enter by the specific force of the simulator and not
 //! by the courses that the watch foretells.
 
-#![allow(
+#![expect(
     clippy::needless_range_loop,
     reason = "loops over several matrices by one index read like the equations"
 )]

@@ -34,7 +34,7 @@
 //! has one of the former and many of the latter.
 
 #![no_std]
-#![allow(
+#![expect(
     clippy::needless_range_loop,
     reason = "loops over several matrices by one index read like the equations"
 )]

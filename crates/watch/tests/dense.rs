@@ -1,6 +1,6 @@
 //! The watch against a direct computation: every onset and effect propagated by itself, from its first
 //! step on, without blocks.
-#![allow(clippy::unwrap_used)]
+#![cfg(test)]
 
 use chacha20::ChaCha12Rng;
 use chacha20::rand_core::{Rng, SeedableRng};

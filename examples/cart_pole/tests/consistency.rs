@@ -1,5 +1,5 @@
 //! Over many carts the errors of the filter are what it says of them.
-#![allow(clippy::unwrap_used)]
+#![cfg(test)]
 
 use gyrocal_example_cart_pole::simulation::{CartAndPole, STEP_S};
 use gyrocal_example_cart_pole::{GUSTS, SENSORS, filter};

@@ -1,8 +1,5 @@
 //! Gain of the extended filter on a later record of the platform with the fault.
-#![allow(
-    clippy::unwrap_used,
-    reason = "a test may stop at what must not happen"
-)]
+#![cfg(test)]
 
 use gyrocal::{FilterSettings, InitialAttitude, PlatformFilter, Site};
 use gyrocal_extended::controller;

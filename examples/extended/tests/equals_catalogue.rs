@@ -1,9 +1,6 @@
 //! The filter on the extended model is that on the model with every effect of the catalogue.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "a test may stop at what must not happen"
-)]
+#![cfg(test)]
 
 use gyrocal::Drift;
 use gyrocal_extended::controller;

@@ -1,10 +1,7 @@
 //! The model of a strapdown unit that a model file gives: exact Jacobians, the step of the filter against
 //! that on the whole catalogue, and the drift that is compensated.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "a test may stop at what must not happen"
-)]
+#![cfg(test)]
 
 use gyrocal::generated::catalogue::PARAMETERS as CATALOGUE_PARAMETERS;
 use gyrocal::generated::strapdown_catalogue::StrapdownCatalogueInputs;

@@ -1,10 +1,7 @@
 //! The filter of a strapdown unit over records of a simulation of its own: it finds the coefficients and the
 //! effects of `unit.model.toml`.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "a test may stop at what must not happen"
-)]
+#![cfg(test)]
 
 use gyrocal::Drift;
 use gyrocal_extended::unit::{PARAMETERS, Unit};

@@ -1,5 +1,5 @@
 //! Over many flights the errors of the filter are what it says of them.
-#![allow(clippy::unwrap_used)]
+#![cfg(test)]
 
 use gyrocal_example_quadrotor::simulation::{Hover, STEP_S};
 use gyrocal_example_quadrotor::{GYROS, SENSORS, filter};

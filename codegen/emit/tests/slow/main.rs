@@ -1,5 +1,5 @@
 //! Emitted modules, compiled with cargo and run.
-#![allow(clippy::unwrap_used, clippy::expect_used)]
+#![cfg(test)]
 
 #[path = "../common/mod.rs"]
 mod common;

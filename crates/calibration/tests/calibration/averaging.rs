@@ -1,5 +1,4 @@
 //! Means of fast records against the independent simulator.
-#![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)] // a test may stop where it fails
 
 use gyrocal_calibration::{
     CalibrationError, Consistency, Options, attitude_walk_share, average_record, calibrate,

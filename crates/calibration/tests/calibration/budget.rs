@@ -1,5 +1,4 @@
 //! The uncertainty budget against calibrations with changed inputs.
-#![allow(clippy::unwrap_used, missing_docs)]
 
 use gyrocal_calibration::{
     Calibration, ModelEstimate, Options, Run, UncertaintyBudget, UncertaintySource, calibrate,

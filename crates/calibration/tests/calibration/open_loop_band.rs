@@ -1,5 +1,4 @@
 //! The expected size of open-loop residuals against simulated records.
-#![allow(clippy::unwrap_used)]
 
 use gyrocal_calibration::{FittedPlatform, NoiseModel, Options, Run, SiteQuantity, calibrate};
 use gyrocal_truth::{Coefficients, InitialAttitude, Scenario, simulate};

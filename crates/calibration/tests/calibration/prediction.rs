@@ -1,5 +1,4 @@
 //! Predictive densities and convergence of a fitted model, each against another computation.
-#![allow(clippy::unwrap_used, missing_docs)]
 
 use gyrocal::Catalogue;
 use gyrocal::generated::catalogue::PARAMETERS;

@@ -1,5 +1,4 @@
 //! White noise and random walks of the gyros, estimated from simulated records.
-#![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
 
 use gyrocal_calibration::{FittedPlatform, NoiseModel, Options, PLATFORM, Run};
 use gyrocal_hypothesis::{Column, ExtraColumns, ModelExtension};

@@ -1,5 +1,4 @@
 //! Whole records of two independent simulators.
-#![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
 
 use std::path::Path;
 

@@ -1,8 +1,7 @@
 //! Runs as in practice: unknown azimuth, several turn-ons, wrong latitude, outliers, wide priors,
 //! fast sampling.
 // Failing here is what tests are for.
-#![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
-#![allow(
+#![expect(
     clippy::needless_range_loop,
     reason = "loops over several arrays by one index read like what they say"
 )]

@@ -1,5 +1,4 @@
 //! One model fitted to several records, against other computations.
-#![allow(clippy::unwrap_used, missing_docs)]
 
 use gyrocal::Discretisation;
 use gyrocal_calibration::{

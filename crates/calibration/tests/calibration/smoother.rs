@@ -1,7 +1,6 @@
 //! The batch estimator on short records, against least squares on dense matrices.
 // Failing here is what tests are for.
-#![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
-#![allow(
+#![expect(
     clippy::needless_range_loop,
     reason = "loops over several matrices by one index read like the equations"
 )]

@@ -66,7 +66,7 @@ fn begin(run: &Range<usize>, first: usize) -> usize {
 /// Searches a series (unit: declared standard deviation; `NaN` is missing), run by run, from row
 /// `first` on. An outlier is given by its row, its residual, and the residual over its standard
 /// deviation.
-#[allow(clippy::needless_range_loop)] // rows index several series
+#[expect(clippy::needless_range_loop, reason = "rows index several series")]
 pub(crate) fn search(series: &[f64], runs: &[Range<usize>], first: usize) -> Search {
     let mut masked = series.to_vec();
     let mut residuals = vec![None; series.len()];

@@ -125,7 +125,6 @@ pub struct DiagnosisResult {
     pub filter: Option<FilterTest>,
 }
 
-#[allow(clippy::trivially_copy_pass_by_ref)] // as serde calls it
 fn is_false(value: &bool) -> bool {
     !*value
 }

@@ -1,5 +1,4 @@
 //! Effects hidden in simulated records: each kind of search finds its own.
-#![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
 
 use gyrocal_diagnosis::result::{
     DiagnosisResult, FindingKind, Prediction, SetMember, UnmodelledPattern,

@@ -1,6 +1,5 @@
 //! The filter of a model file of a strapdown unit over simulated records, against their truth and against
 //! the fit to the whole record.
-#![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
 
 use gyrocal::Discretisation;
 use gyrocal_calibration::{GyroAxes, Run, declared_attitude, filter_settings};

@@ -1,5 +1,4 @@
 //! Effects of an extended model, and its gain on a later record.
-#![allow(clippy::unwrap_used, missing_docs)]
 
 use gyrocal::generated::catalogue::PARAMETERS;
 use gyrocal_calibration::{FittedPlatform, NoiseModel, Run};

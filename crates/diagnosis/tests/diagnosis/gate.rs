@@ -1,5 +1,4 @@
 //! The gate: what rows alone do not decide is decided by fits of both signs of the latitude.
-#![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
 
 use gyrocal_calibration::{Options, Run, calibrate};
 use gyrocal_diagnosis::prose::first_screen;

@@ -1,5 +1,4 @@
 //! Records that no model fits: what is said of them, and what that may cost.
-#![allow(clippy::unwrap_used, missing_docs)]
 
 use gyrocal_calibration::work;
 use gyrocal_diagnosis::prose::{first_screen, may_also_be};

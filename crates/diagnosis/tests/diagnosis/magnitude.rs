@@ -1,5 +1,4 @@
 //! The magnitude channel, which sees accelerometers whatever the attitude.
-#![allow(clippy::unwrap_used, clippy::expect_used)] // a test stops at what fails
 
 use gyrocal_diagnosis::magnitude_channel;
 use gyrocal_record::Record;

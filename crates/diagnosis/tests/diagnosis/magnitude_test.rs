@@ -1,5 +1,4 @@
 //! The specific-force magnitude test: false alarms, and errors of accelerometers.
-#![allow(clippy::unwrap_used, clippy::expect_used)] // a test stops at what fails
 
 use gyrocal_diagnosis::magnitude_test;
 use gyrocal_record::{Bench, Record};

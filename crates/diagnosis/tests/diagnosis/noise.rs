@@ -2,7 +2,6 @@
 //!
 //! `cargo figures diagnosis --part ground` measures the same over populations; here each fault has a few
 //! records.
-#![allow(clippy::unwrap_used, clippy::expect_used)] // a test stops at what fails
 
 use gyrocal_diagnosis::{AuditOptions, DiagnosisError, NoiseAudit, audit_noise};
 use gyrocal_testkit::noise_faults::{Fault, FaultyRecord, faulty_record};

@@ -1,5 +1,4 @@
 //! Gross errors in rows that the noise audit cannot test.
-#![allow(clippy::unwrap_used, missing_docs)]
 
 use gyrocal_diagnosis::result::FindingKind;
 use gyrocal_diagnosis::{DiagnoseOptions, Verdict, diagnose};

@@ -1,5 +1,4 @@
 //! Several records of one platform, diagnosed together.
-#![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
 
 use gyrocal_calibration::Run;
 use gyrocal_diagnosis::result::{DiagnosisResult, SizeChoice};

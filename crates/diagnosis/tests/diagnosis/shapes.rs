@@ -1,5 +1,4 @@
 //! Intervals of onsets and time constants.
-#![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
 
 use gyrocal::EFFECTS;
 use gyrocal_calibration::{FittedPlatform, PLATFORM, rows};

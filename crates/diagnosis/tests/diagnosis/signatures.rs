@@ -1,7 +1,6 @@
 //! The signature of every effect of the catalogue against finite differences of the nonlinear
 //! simulation, which is written independently; `cargo figures diagnosis --part ground` does the same
 //! over more and longer records.
-#![allow(clippy::unwrap_used, clippy::expect_used)] // a test stops at what fails
 
 use gyrocal_testkit::signature_differences::compare;
 use gyrocal_truth::{Population, Scenario, Temperature};

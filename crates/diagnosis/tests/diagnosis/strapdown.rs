@@ -1,5 +1,4 @@
 //! Diagnosis in the axes of gyros that are fixed to a body, against a simulation of its own.
-#![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
 
 use gyrocal_calibration::{CalibrationError, GyroAxes, Run};
 use gyrocal_diagnosis::{

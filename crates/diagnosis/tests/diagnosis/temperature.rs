@@ -1,5 +1,4 @@
 //! Effects of temperature hidden in simulated records of three days.
-#![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)] // a test stops at what fails
 
 use gyrocal_calibration::Run;
 use gyrocal_diagnosis::result::DiagnosisResult;

@@ -11,7 +11,13 @@ use crate::figure::Figure;
 
 #[path = "../../../../examples/duffing/plant.rs"]
 #[rustfmt::skip]
-#[allow(missing_docs, unreachable_pub, dead_code, clippy::all)]
+#[expect(
+    unreachable_pub,
+    dead_code,
+    clippy::too_many_lines,
+    clippy::wrong_self_convention,
+    reason = "generated for every use"
+)]
 mod duffing;
 
 /// Largest difference of a number over its standard deviation.

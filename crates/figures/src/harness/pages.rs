@@ -220,7 +220,6 @@ fn rows(page: &str) -> Vec<Row> {
 }
 
 #[cfg(test)]
-#[allow(clippy::expect_used, reason = "a failure here is a failed test")]
 mod tests {
     use super::*;
     use crate::figure::table_of;

@@ -84,7 +84,6 @@ fn script(page: &str) -> String {
 }
 
 #[cfg(test)]
-#[allow(clippy::expect_used, reason = "a failure here is a failed test")]
 mod tests {
     use super::*;
 

@@ -366,7 +366,6 @@ mod tests {
     }
 
     #[test]
-    #[allow(clippy::expect_used, clippy::unwrap_used)]
     fn stated_coverages_are_those_of_the_page() {
         let page = std::fs::read_to_string(pages::path("diagnosis")).unwrap();
         for (kind, stated) in SET_COVERAGE {

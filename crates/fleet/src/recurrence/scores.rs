@@ -168,7 +168,6 @@ pub(crate) fn direction(size: usize, draw: &mut Draw) -> DVector<f64> {
 }
 
 #[cfg(test)]
-#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
 

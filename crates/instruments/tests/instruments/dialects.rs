@@ -1,5 +1,4 @@
 //! Records of a stable platform in the formats and dialects of other programs.
-#![allow(clippy::unwrap_used)]
 
 use gyrocal_instruments::{Description, InstrumentError, average_file, read_any, read_record};
 use gyrocal_record::Record;

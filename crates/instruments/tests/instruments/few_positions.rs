@@ -1,7 +1,5 @@
 //! Tests of two, six and twelve positions, and of stops in the hand, on logs whose errors are known.
 
-#![allow(clippy::unwrap_used, clippy::expect_used)] // tests stop where they fail
-
 use gyrocal_instruments::multi_position::{PreparedTest, few_position_test, prepare_logs};
 use gyrocal_instruments::{Description, Log, StopSettings, Unfit, find_stops};
 use gyrocal_statistics::deviates::Draw;

@@ -1,8 +1,6 @@
 //! Errors of a strapdown unit's gyros, found from the platform computed from their outputs, against
 //! simulation with known errors.
 
-#![allow(clippy::unwrap_used, clippy::expect_used)] // tests stop where they fail
-
 use crate::common::{EARTH_RATE_RAD_PER_S, Noise, log};
 use gyrocal_calibration::{
     Calibration, GyroAxes, Options, Run, calibrate_runs, calibrate_strapdown,

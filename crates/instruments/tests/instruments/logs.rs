@@ -1,7 +1,5 @@
 //! Logs and their descriptions: columns, units, axes, clocks, and their faults.
 
-#![allow(clippy::unwrap_used, clippy::expect_used)] // tests stop where they fail
-
 use gyrocal_instruments::{Description, InstrumentError, Log, Unfit};
 use gyrocal_statistics::allan::{NoisePart, allan_deviation, fit_noise, octaves};
 

@@ -1,5 +1,5 @@
 //! Tests of the library in one program: to compile and link one for each file would take most of their time.
-#![allow(missing_docs)]
+#![cfg(test)]
 
 mod common;
 mod dialects;

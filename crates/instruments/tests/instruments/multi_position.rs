@@ -1,7 +1,5 @@
 //! The multi-position test on positions and logs whose law is known.
 
-#![allow(clippy::unwrap_used, clippy::expect_used)] // tests stop where they fail
-
 use crate::common::{Noise, Unit, stops_and_turns};
 use gyrocal_instruments::multi_position::{
     MultiPositionSettings, Positions, PreparedTest, SearchSettings, Term, multi_position_test,

@@ -1,7 +1,5 @@
 //! Logs in the rate domain against errors that are known.
 
-#![allow(clippy::expect_used, reason = "a failure here is a failed test")]
-
 use gyrocal_instruments::rates::{GyroRates, RateReport, RateSettings, evaluate_rates};
 use gyrocal_instruments::{Description, Log, Unfit};
 use gyrocal_statistics::deviates::Normals;

@@ -1,7 +1,5 @@
 //! The analytic platform against simulation with known errors.
 
-#![allow(clippy::unwrap_used, clippy::expect_used)] // tests stop where they fail
-
 use crate::common::{EARTH_RATE_RAD_PER_S, log};
 use gyrocal_instruments::strapdown::{ImportSettings, Imported, import, integrate};
 use gyrocal_instruments::{Description, InstrumentError, Log, Unfit};

@@ -1,5 +1,4 @@
 //! Logs in files whose columns have types: MATLAB and, by features, MCAP and Parquet.
-#![allow(clippy::unwrap_used)]
 
 use std::path::PathBuf;
 

@@ -1,5 +1,3 @@
-#![allow(clippy::unwrap_used)]
-
 use super::*;
 
 /// y = (a / b, 7), z = sin(a) of (a, b); `{instructions}` is what a test fills in.

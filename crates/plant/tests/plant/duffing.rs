@@ -1,5 +1,4 @@
 //! The oscillator of `examples/duffing`: records of an independent simulator, effects hidden there.
-#![allow(clippy::unwrap_used)]
 
 use std::path::{Path, PathBuf};
 

@@ -1,5 +1,4 @@
 //! Gauges, weak excitation, and inputs that are refused in words.
-#![allow(clippy::unwrap_used)]
 
 use std::path::{Path, PathBuf};
 

@@ -1,6 +1,5 @@
 //! Interpreted functions and generated Rust of one program: the same names and sets, and numbers that
 //! differ by rounding only.
-#![allow(clippy::unwrap_used)]
 
 use std::path::{Path, PathBuf};
 
@@ -8,7 +7,13 @@ use gyrocal_plant::{ColumnMap, LoadedPlant, SearchOptions, diagnose};
 
 #[path = "../../../../examples/duffing/plant.rs"]
 #[rustfmt::skip]
-#[allow(missing_docs, unreachable_pub, dead_code, clippy::all)]
+#[expect(
+    unreachable_pub,
+    dead_code,
+    clippy::too_many_lines,
+    clippy::wrong_self_convention,
+    reason = "generated for every use"
+)]
 mod duffing;
 
 fn example(file: &str) -> PathBuf {

@@ -1,5 +1,4 @@
 //! Delay and play of inputs.
-#![allow(clippy::unwrap_used)]
 
 use std::path::Path;
 

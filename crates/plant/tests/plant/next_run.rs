@@ -1,5 +1,4 @@
 //! Forecasts of runs of an oscillator, and the gain within records, beside what other fits give.
-#![allow(clippy::unwrap_used)]
 
 use std::path::Path;
 

@@ -1,6 +1,5 @@
 //! Plants of a population, two of them under feedback: clean records with noise that is misdeclared, and
 //! records with one hidden effect, from simulators that share no code with the models.
-#![allow(clippy::unwrap_used)]
 
 use std::path::Path;
 

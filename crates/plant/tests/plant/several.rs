@@ -1,5 +1,4 @@
 //! Several records of one oscillator: information adds, initial states are those of each record.
-#![allow(clippy::unwrap_used)]
 
 use std::path::Path;
 

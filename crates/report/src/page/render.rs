@@ -288,7 +288,6 @@ fn make_printable(value: &mut Value) {
 }
 
 #[cfg(test)]
-#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
     use crate::page::{

@@ -165,7 +165,6 @@ impl Weighted {
 const SINGULAR: f64 = 1e-12;
 
 #[cfg(test)]
-#[allow(clippy::expect_used, reason = "a failure here is a failed test")]
 mod tests {
     use super::*;
 

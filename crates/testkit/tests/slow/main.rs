@@ -1,5 +1,5 @@
 //! Builds of copies of the workspace and of small derivations, with cargo and Python as a user has them.
-#![allow(clippy::unwrap_used, clippy::expect_used)]
+#![cfg(test)]
 
 mod check;
 mod environment;

@@ -126,7 +126,6 @@ fn longest_step_s(rate_deg_per_h: f64) -> f64 {
 }
 
 #[cfg(test)]
-#[allow(clippy::unwrap_used, clippy::expect_used)]
 mod tests {
     use super::*;
     use crate::coefficients::Coefficients;

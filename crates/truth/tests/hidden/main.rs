@@ -1,7 +1,7 @@
 //! Hidden effects against closed forms and against their definitions.
 
 // A test that cannot go on fails with the reason.
-#![allow(clippy::unwrap_used, clippy::expect_used)]
+#![cfg(test)]
 
 mod files;
 mod motion;
