@@ -2,6 +2,7 @@ use gyrocal_estimation::form::Form;
 use gyrocal_estimation::{ArrayStorage, EstimationError, Factors, Filter, Innovation, Precision};
 
 use crate::anchor::{Anchored, Chart};
+use crate::generated::platform::platform_index::GYRO_X_BIAS;
 use crate::generated::platform::{Drift, Platform, reanchor};
 use crate::initial_attitude::InitialAttitude;
 // emit: off
@@ -252,19 +253,21 @@ impl<T: Precision, F: Form<T>> PlatformFilter<T, F> {
     #[must_use]
     pub fn drift(&self) -> Drift<T> {
         let state = self.kernel.state();
-        Drift::from_array(core::array::from_fn(|i| state[3 + i]))
+        Drift::from_array(core::array::from_fn(|i| state[GYRO_X_BIAS + i]))
     }
 
     /// Standard deviations of the errors of [`Self::drift`].
     #[must_use]
     pub fn drift_sigma(&self) -> Drift<T> {
-        Drift::from_array(core::array::from_fn(|i| self.kernel.sigma(3 + i)))
+        Drift::from_array(core::array::from_fn(|i| self.kernel.sigma(GYRO_X_BIAS + i)))
     }
 
     /// Covariance of the errors of [`Self::drift`], in the order of its fields.
     #[must_use]
     pub fn drift_covariance(&self) -> [[T; Platform::PARAMETERS]; Platform::PARAMETERS] {
-        core::array::from_fn(|i| core::array::from_fn(|j| self.kernel.covariance(3 + i, 3 + j)))
+        core::array::from_fn(|i| {
+            core::array::from_fn(|j| self.kernel.covariance(GYRO_X_BIAS + i, GYRO_X_BIAS + j))
+        })
     }
 
     /// Estimated attitude: platform components from East, North, Up components.

@@ -208,7 +208,7 @@ fn single_precision_follows_double_precision() {
     let mut truth = double.clone();
     for _ in 0..300 {
         truth.predict(60.0).unwrap();
-        let [_, _, up] = [0, 1, 2].map(|row| truth.platform_c_enu()[row][2]);
+        let [_, _, up] = core::array::from_fn(|row| truth.platform_c_enu()[row][2]);
         let measured = [
             truth.platform_c_enu()[0][2],
             truth.platform_c_enu()[1][2],

@@ -73,7 +73,7 @@ fn generated_values_satisfy_the_equations_of_the_paper() {
         let force = platform::specific_force(&state.theta, &state.f_0);
         // (1), (2)
         let drift: Vector = core::array::from_fn(|i| {
-            let [fixed, along, square] = [0, 1, 2].map(|term| state.drift[3 * i + term]);
+            let [fixed, along, square] = core::array::from_fn(|term| state.drift[3 * i + term]);
             fixed + along * a[i] + square * a[i] * a[i]
         });
         let omega_d = platform::drift_rate(&state.theta, &state.drift, &state.f_0);

@@ -26,7 +26,7 @@ fn the_platform_turns_by_minus_the_errors_of_gyros_at_body_specific_force() {
         let c = platform_c_chart(&state.theta);
         let force = apply(&gyros_c_platform, &apply(&c, &state.f_0));
         let error: Vector = core::array::from_fn(|i| {
-            let [bias, along, square] = [0, 1, 2].map(|term| state.drift[3 * i + term]);
+            let [bias, along, square] = core::array::from_fn(|term| state.drift[3 * i + term]);
             bias + along * force[i] + square * force[i] * force[i]
         });
         let turned = apply(&platform_c_gyros, &error);

@@ -109,7 +109,7 @@ pub(crate) fn initial_guess(
     }
     let values = gross_errors
         .iter()
-        .flat_map(|row| [0, 1, 2].map(|axis| [*row, axis]));
+        .flat_map(|row| (0..3).map(|axis| [*row, axis]));
     let run = Run {
         record: &run.record.without(values),
         bench: run.bench,

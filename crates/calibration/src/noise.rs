@@ -118,7 +118,7 @@ pub(crate) fn estimate(
         }
     };
     Ok(NoiseEstimate {
-        accel: [0, 1, 2].map(ratio),
+        accel: core::array::from_fn(ratio),
         gyro: [3, 4, 5].map(ratio),
     })
 }

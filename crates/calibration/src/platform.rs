@@ -1,5 +1,6 @@
 //! The platform with its catalogue of effects, as a plant of the score tests.
 
+use gyrocal::generated::catalogue::theta_index::{THETA_X, THETA_Y, THETA_Z};
 use gyrocal::generated::catalogue::{self, EFFECTS, OUTPUTS, PARAMETERS, RATES, SHAPES};
 use gyrocal_hypothesis::{Covariate, Plant, Rows, WeightInputs};
 use gyrocal_record::Record;
@@ -29,7 +30,7 @@ pub static PLATFORM: Plant = Plant {
     nominal_parameters: coefficients::PARAMETERS,
     shapes: &SHAPES,
     rates: &RATES,
-    rate_states: &[0, 1, 2],
+    rate_states: &[THETA_X, THETA_Y, THETA_Z],
     outputs: &OUTPUTS,
     moving_states: 3,
     weight_count: weight_count(catalogue::weights),

@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use clap::{Args, Subcommand};
 use gyrocal_instruments::strapdown::{ImportReport, ImportSettings, Imported, axes_csv, import};
 use gyrocal_instruments::{Description, InstrumentError, Log, ResultFile};
-use gyrocal_record::{Outputs, printable_path};
+use gyrocal_record::{AXES, Outputs, printable_path};
 
 use crate::measured::unusable;
 use crate::numbers::{angle_deg, angle_sigma_deg, positive};
@@ -259,7 +259,7 @@ fn rates(text: &mut String, report: &ImportReport) {
 fn determined(text: &mut String, report: &ImportReport) {
     let c = &report.body_c_enu;
     let combination = |column: usize| {
-        let parts = ["x", "y", "z"].iter().zip(c);
+        let parts = AXES.iter().zip(c);
         let parts: Vec<String> = parts
             .map(|(axis, row)| format!("{:+.4} e_{axis}", row[column]))
             .collect();

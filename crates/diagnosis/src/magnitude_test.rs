@@ -1,7 +1,7 @@
 //! Specific-force magnitude test: separates errors of the accelerometers from errors of gyros,
 //! attitude and site (docs/method.md, equation 20).
 
-use gyrocal_record::{Bench, Record};
+use gyrocal_record::{AXES, Bench, Record};
 use gyrocal_statistics::{BinnedMeans, p_of_least};
 
 use crate::error::DiagnosisError;
@@ -98,7 +98,7 @@ pub fn magnitude_test(
         if high - low < LEAST_RANGE_SIGMAS * accel_noise_g[axis] {
             continue;
         }
-        let axis = ["x", "y", "z"][axis];
+        let axis = AXES[axis];
         depends(&format!("specific force along {axis}"), found);
     }
     depends("time", &channel.on_time);

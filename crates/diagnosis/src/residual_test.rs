@@ -2,7 +2,7 @@
 
 use gyrocal_calibration::{CalibrationError, FittedPlatform};
 use gyrocal_hypothesis::{Pattern, Unmodelled};
-use gyrocal_record::Record;
+use gyrocal_record::{AXES, Record};
 use gyrocal_statistics::{autocorrelation, p_of_least, periodogram, strongest_line};
 
 use crate::error_budget::RESIDUAL_TESTS;
@@ -14,9 +14,6 @@ use crate::result::{
 
 /// Lags of the portmanteau test: structure shorter than these many rows.
 const LAGS: usize = 20;
-
-/// Channels by name.
-const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// The innovations of a fit, whitened.
 ///
@@ -96,7 +93,7 @@ pub(crate) fn residual_test(
 
 /// The largest line in the spectra of all channels; `None` if they are too short for one.
 fn largest_line(time_s: &[f64], whitened: &[[f64; 3]], alpha: f64) -> Option<ResidualLine> {
-    let [x, y, z] = [0, 1, 2].map(|axis| {
+    let [x, y, z] = core::array::from_fn(|axis| {
         let series: Vec<f64> = whitened.iter().map(|row| row[axis]).collect();
         periodogram(time_s, &series, alpha)
     });

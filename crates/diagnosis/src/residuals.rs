@@ -30,7 +30,7 @@ pub(crate) fn residuals(
     let simulated_g = nominal.free_run_g()?;
     let normalised = &innovations.normalised;
     let channel = |axis: usize| normalised.iter().map(|row| row[axis]).collect::<Vec<f64>>();
-    let channels = [0, 1, 2].map(channel);
+    let channels = core::array::from_fn(channel);
     let lines = channels
         .each_ref()
         .map(|series| periodogram(&innovations.time_s, series, false_alarm));

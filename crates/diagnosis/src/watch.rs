@@ -9,7 +9,7 @@ use gyrocal::{
     SavedNumber, Site,
 };
 use gyrocal_calibration::{CalibrationError, declared_attitude, filter_settings};
-use gyrocal_record::{Bench, Manifest, Record, SCHEMA_VERSION};
+use gyrocal_record::{AXES, Bench, Manifest, Record, SCHEMA_VERSION};
 use serde::Serialize;
 
 use crate::error::DiagnosisError;
@@ -289,7 +289,7 @@ impl<'a, T: SavedNumber> Replay<'a, T> {
             Some(effect) => (effect.id.to_owned(), None, effect.unit, 1.0),
             None => {
                 let axis = candidate.effect - EFFECTS_BY_DEFAULT.len();
-                let letter = ["x", "y", "z"].get(axis).copied().unwrap_or_default();
+                let letter = AXES.get(axis).copied().unwrap_or_default();
                 (
                     format!("platform.knock about {letter}"),
                     Some(axis),

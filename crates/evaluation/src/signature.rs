@@ -43,17 +43,17 @@ impl SignatureColumns {
                 .partition_point(|time_s| time_s - first_s < onset_s)
         };
         let further = match (effect.kind, shape, effect.rate()) {
-            (EffectKind::InitialState, ..) => [0, 1, 2]
+            (EffectKind::InitialState, ..) => (0..3)
                 .map(|axis| Column::InitialState {
                     row: 0,
                     state: axis,
                 })
-                .to_vec(),
+                .collect(),
             (EffectKind::StateJump, Some(onset_s), _) => {
                 let row = rows_before(onset_s).saturating_sub(1).min(last_step);
-                [0, 1, 2]
+                (0..3)
                     .map(|axis| Column::StateJump { row, state: axis })
-                    .to_vec()
+                    .collect()
             }
             (EffectKind::Step, Some(onset_s), Some(gyro)) => vec![Column::Step {
                 parameter: BIASES[gyro],

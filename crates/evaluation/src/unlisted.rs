@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use gyrocal_record::AXES;
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{Hidden, Moment, Scenario, Simulation, Term, simulate, simulate_with};
 
@@ -23,8 +24,6 @@ const LAGS_H: [f64; 2] = [0.5, 6.0];
 
 /// Specific force at which the gain of a saturating accelerometer has fallen to 0.42 \[g\].
 const SATURATION_G: f64 = 0.6;
-
-const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// A kind of effect that the catalogue does not hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,5 +1,6 @@
 //! Calibration of accelerometers by the norm of specific force at rest, which is 1 g in any attitude.
 
+use gyrocal_record::AXES;
 use gyrocal_statistics::upper_median;
 
 use crate::error::{InstrumentError, Unfit};
@@ -87,7 +88,7 @@ struct OutputRange {
 
 /// The ranges of the three accelerometers, none of which may be much narrower than the widest.
 fn ranges(stops: &[StopMeans]) -> Result<[OutputRange; 3], InstrumentError> {
-    let ranges = [0, 1, 2].map(|axis| {
+    let ranges = core::array::from_fn(|axis| {
         let outputs = stops.iter().map(|stop| stop.accel[axis]);
         let low = outputs.clone().fold(f64::INFINITY, f64::min);
         let high = outputs.fold(f64::NEG_INFINITY, f64::max);
@@ -100,7 +101,7 @@ fn ranges(stops: &[StopMeans]) -> Result<[OutputRange; 3], InstrumentError> {
     match (0..3).find(|axis| ranges[*axis].half < 0.3 * widest) {
         None => Ok(ranges),
         Some(axis) => {
-            let name = ["x", "y", "z"][axis];
+            let name = AXES[axis];
             Err(undetermined(format!(
                 "accelerometer {name} in few attitudes"
             )))

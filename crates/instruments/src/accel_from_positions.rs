@@ -1,5 +1,6 @@
 //! Calibration of accelerometers from few positions, by the norm of specific force at rest.
 
+use gyrocal_record::AXES;
 use nalgebra::DMatrix;
 use serde::Serialize;
 
@@ -94,7 +95,7 @@ pub fn accel_from_positions(stops: &[StopMeans]) -> Result<AccelErrors, Instrume
         excess_g = high;
         (fitted, determined) = fit(stops, excess_g);
     }
-    let names = ["x", "y", "z"];
+    let names = AXES;
     let misalignments = [(0, 1), (0, 2), (1, 2)];
     let coefficients = (0..UNKNOWNS).map(|index| {
         let (name, unit) = match index {

@@ -1,6 +1,7 @@
 //! Calibration of gyros by the turns between stops: the integrated rate of a turn must rotate gravity
 //! from one stop to the next.
 
+use gyrocal_record::AXES;
 use nalgebra::{DMatrix, Matrix3, UnitQuaternion, Vector3};
 
 use crate::error::{InstrumentError, Unfit};
@@ -202,10 +203,10 @@ fn refuse_axes(matrix: &Matrix3<f64>, inverse: &Matrix3<f64>) -> Result<(), Inst
         let larger = |a: &usize, b: &usize| row[*a].abs().total_cmp(&row[*b].abs());
         let axis = (0..3).max_by(larger).unwrap_or(0);
         let sign = if row[axis] < 0.0 { "-" } else { "" };
-        format!("{sign}{}", ["x", "y", "z"][axis])
+        format!("{sign}{}", AXES[axis])
     };
     let found: Vec<String> = (0..3).map(axes_of).collect();
-    if found == ["x", "y", "z"] {
+    if found == AXES {
         return Ok(());
     }
     let hand = if matrix.determinant() < 0.0 {

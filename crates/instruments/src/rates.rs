@@ -315,11 +315,7 @@ fn check(logs: &[Log], description: &Description) -> Result<f64, InstrumentError
 fn mean_norm_g(log: &Log) -> f64 {
     let mean =
         |axis: usize| log.accel.iter().map(|force| force[axis]).sum::<f64>() / log.len() as f64;
-    [0, 1, 2]
-        .map(|axis| mean(axis).powi(2))
-        .iter()
-        .sum::<f64>()
-        .sqrt()
+    (0..3).map(|axis| mean(axis).powi(2)).sum::<f64>().sqrt()
 }
 
 fn never_changes(gyro: usize) -> InstrumentError {

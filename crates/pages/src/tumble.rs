@@ -1,7 +1,7 @@
 //! The page of a multi-position test with many stops.
 
 use gyrocal_instruments::multi_position::{Finding, GyroReport, MultiPositionReport, PreparedTest};
-use gyrocal_record::Manifest;
+use gyrocal_record::{AXES, Manifest};
 use gyrocal_report::page::{
     Band, Card, Cell, Chart, Column, EstimateRow, Estimates, Item, Line, LineKind, Panel, Part,
     Section, Summary, Table, Tint, Tone, ValueWithSigma,
@@ -10,7 +10,7 @@ use gyrocal_statistics::format;
 
 use crate::diagnosis::section;
 use crate::origin::{file_name, origin};
-use crate::words::{AXES, listed};
+use crate::words::listed;
 
 /// Findings named on the first screen.
 const SHOWN: usize = 8;

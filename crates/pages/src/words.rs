@@ -2,9 +2,6 @@
 
 use gyrocal_statistics::format;
 
-/// Letters of the axes.
-pub(crate) const AXES: [&str; 3] = ["x", "y", "z"];
-
 /// A specific force in µg.
 pub(crate) fn micro_g(force_g: f64) -> String {
     format!("{} µg", format::short(1e6 * force_g, 2))

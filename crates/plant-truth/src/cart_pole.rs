@@ -38,7 +38,7 @@ const LENGTH: f64 = 0.5;
 const GRAVITY: f64 = 9.81;
 
 pub(crate) fn simulate(setting: &Setting, replayed: Option<&[Vec<f64>]>) -> Run {
-    let [friction, pole, gain] = [0, 1, 2].map(|index| setting.parameters[index]);
+    let [friction, pole, gain] = core::array::from_fn(|index| setting.parameters[index]);
     let reference = Multisine::new(&mut Stream::new(setting.seed, 1), 2.0, [0.2, 2.0]);
     let size = |effect| setting.size(effect);
     let rates = |at: &Moment<'_, 4>| {

@@ -28,7 +28,7 @@ pub(crate) const FACTS: Facts = Facts {
 const STEP_S: f64 = 0.05;
 
 pub(crate) fn simulate(setting: &Setting, replayed: Option<&[Vec<f64>]>) -> Run {
-    let [stiffness, damping, gain] = [0, 1, 2].map(|index| setting.parameters[index]);
+    let [stiffness, damping, gain] = core::array::from_fn(|index| setting.parameters[index]);
     let drive = Multisine::new(&mut Stream::new(setting.seed, 1), 1.6, [0.05, 0.8]);
     let size = |effect| setting.size(effect);
     let rates = |at: &Moment<'_, 2>| {

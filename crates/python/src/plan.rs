@@ -9,7 +9,7 @@ use gyrocal_design::{
     Aim, DesignError, Goal, NamedCause, PlanOptions, noise_of, plan as design, prose,
 };
 use gyrocal_diagnosis::{DiagnosisResult, diagnose_gated};
-use gyrocal_record::{GimbalLimits, InputRole, Record, SetupProblem, SourceText};
+use gyrocal_record::{AXES, GimbalLimits, InputRole, Record, SetupProblem, SourceText};
 use pyo3::prelude::*;
 
 use crate::axes::{Axes, GivenAxes};
@@ -225,7 +225,7 @@ fn durations_s(hours: &[f64]) -> Outcome<Vec<f64>> {
 fn limits(given: &[(String, [f64; 2])], of_bench: GimbalLimits) -> Outcome<GimbalLimits> {
     let mut limits = of_bench;
     for (axis, ends) in given {
-        let place = GimbalLimits::KEYS.iter().position(|key| key == axis);
+        let place = AXES.iter().position(|key| key == axis);
         match place.filter(|_| GimbalLimits::is_sound(*ends)) {
             Some(place) => limits.deg[place] = Some(*ends),
             None => {

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use crate::AXES;
 use crate::bound::Bound;
 use crate::error::{Error, InputErrorKind};
 use crate::table::Table;
@@ -17,9 +18,6 @@ pub struct GimbalLimits {
 impl GimbalLimits {
     /// Name of the table in a bench file.
     pub const TABLE: &'static str = "gimbal_limits_deg";
-
-    /// Keys of the table.
-    pub const KEYS: [&'static str; 3] = ["x", "y", "z"];
 
     /// Condition on the two limits of an angle, for messages.
     pub const EXPECTED: &'static str =
@@ -52,8 +50,8 @@ impl GimbalLimits {
     /// [`Error::Input`] for a fault in it.
     pub fn from_root(root: &Table<'_>) -> Result<Self, Error> {
         let mut limits = Self::default();
-        if let Some(table) = root.optional_table(Self::TABLE, &Self::KEYS)? {
-            for (limit, key) in limits.deg.iter_mut().zip(Self::KEYS) {
+        if let Some(table) = root.optional_table(Self::TABLE, &AXES)? {
+            for (limit, key) in limits.deg.iter_mut().zip(AXES) {
                 *limit = table.optional_two_numbers(key, Bound::ANGLE_DEG)?;
                 if limit.is_some_and(|limit| !Self::is_sound(limit)) {
                     let kind = InputErrorKind::OutOfRange;
@@ -68,7 +66,7 @@ impl GimbalLimits {
     #[must_use]
     pub fn to_toml(&self) -> String {
         let mut text = String::new();
-        for (limit, key) in self.deg.iter().zip(Self::KEYS) {
+        for (limit, key) in self.deg.iter().zip(AXES) {
             if let Some(limit) = limit {
                 if text.is_empty() {
                     let _ = writeln!(text, "\n[{}]", Self::TABLE);

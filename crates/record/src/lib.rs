@@ -114,3 +114,6 @@ pub use source::SourceText;
 pub use suggest::{any_of, nearest_names, similar_names};
 pub use table::Table;
 pub use white_noise::WhiteNoise;
+
+/// Letters of the axes, in the order of every array of three: keys of tables and parts of names.
+pub const AXES: [&str; 3] = ["x", "y", "z"];

@@ -4,6 +4,7 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 
 use chacha20::ChaCha8Rng;
+use gyrocal_record::AXES;
 use gyrocal_report::page::Tint;
 use gyrocal_report::{
     Bin, ComparedEstimate, ComparedQuantity, Comparison, Convergence, Correlation,
@@ -18,7 +19,6 @@ const STEP_S: f64 = 60.0;
 const DAY_S: f64 = 86_400.0;
 const SIDEREAL_DAY_S: f64 = 86_164.1;
 const COEFFICIENTS: [(&str, &str); 3] = [("bias", "deg/h"), ("g", "deg/h/g"), ("gg", "deg/h/g²")];
-const AXES: [&str; 3] = ["x", "y", "z"];
 
 fn main() -> Result<(), Box<dyn Error>> {
     let directory = std::env::args().nth(1).map(PathBuf::from);

@@ -1,11 +1,13 @@
 //! Accelerometers that do not go beyond a value.
 
+use gyrocal_record::AXES;
+
 use crate::coded::of_rows;
 use crate::finding::SetupFinding;
 use crate::kind::SetupKind;
 use crate::samples::Samples;
 use crate::scale;
-use crate::text::{AXES, number, row, rows};
+use crate::text::{number, row, rows};
 
 /// Width of the band below an extreme, in sigmas: noise that was added after the limit, and steps.
 const BAND_SIGMAS: f64 = 8.0;

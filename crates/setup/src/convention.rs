@@ -85,7 +85,7 @@ fn product(a: Matrix, b: Matrix) -> Matrix {
 }
 
 fn transposed(a: Matrix) -> Matrix {
-    [0, 1, 2].map(|i| [0, 1, 2].map(|j| a[j][i]))
+    core::array::from_fn(|i| core::array::from_fn(|j| a[j][i]))
 }
 
 /// A matrix times a vector.

@@ -12,7 +12,7 @@ const LEAST_SHARE: f64 = 0.05;
 /// are enough for a calibration; otherwise nothing tells the sign of the third component.
 pub(crate) fn find(samples: &mut Samples<'_>) -> Vec<SetupFinding> {
     let measured = samples.measured_rows();
-    let counts = [0, 1, 2].map(|axis| {
+    let counts: [usize; 3] = core::array::from_fn(|axis| {
         let values = samples.accel_g.iter().map(|row| row[axis]);
         values.filter(|value| !value.is_nan()).count()
     });

@@ -77,7 +77,7 @@ pub(crate) fn find(samples: &mut Samples<'_>) -> Vec<SetupFinding> {
         return Vec::new();
     }
     let sum = complete.iter().fold([0.0; 3], |sum, sample| {
-        [0, 1, 2].map(|axis| sum[axis] + sample.up[axis])
+        core::array::from_fn(|axis| sum[axis] + sample.up[axis])
     });
     let middle = unit(sum);
     let mut off: Vec<f64> = complete.iter().map(|s| angle(s.up, middle)).collect();

@@ -84,7 +84,7 @@ fn step_g(column: &[f64]) -> f64 {
 /// declared; zero of a column with too few equally spaced values.
 #[must_use]
 pub fn shown_noise_g(record: &Record) -> [f64; 3] {
-    [0, 1, 2].map(|axis| {
+    core::array::from_fn(|axis| {
         let column: Vec<f64> = record.accel_g.iter().map(|row| row[axis]).collect();
         column_noise(&record.time_s, &column, 0.0).sigma_g
     })

@@ -31,7 +31,7 @@ pub(crate) fn vertical_sigma_deg_per_h(bench: &Bench, rows: &[Complete]) -> f64 
 pub(crate) fn horizontal_sigma_deg_per_h(bench: &Bench) -> f64 {
     let prior = &bench.prior;
     let largest = |sigmas: [f64; 3]| sigmas.into_iter().fold(0.0, f64::max);
-    let biases = [0, 1, 2].map(|axis| bias(bench, axis));
+    let biases = core::array::from_fn(|axis| bias(bench, axis));
     // Drifts that depend on force are smaller across the vertical: a third of the square of each.
     let square = largest(biases).powi(2)
         + largest(prior.g_sigma_deg_per_h_per_g).powi(2) / 3.0

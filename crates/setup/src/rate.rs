@@ -78,7 +78,7 @@ pub(crate) fn rate(rows: &[Complete]) -> Option<Rate> {
         matrix[(change, change)] += (CHANGE_RIDGE * part_s).powi(2);
     }
     let solved = matrix.cholesky()?.solve(&right);
-    let at = |share: f64| [0, 1, 2].map(|i| solved[i] + share * solved[3 + i]);
+    let at = |share: f64| core::array::from_fn(|i| solved[i] + share * solved[3 + i]);
     let vertical = |row: &Complete| dot(row.up, at((row.time_s - middle_s) / half_s));
     let size = |row: &Complete| norm(across(at((row.time_s - middle_s) / half_s), row.up));
     let count = rows.len() as f64;

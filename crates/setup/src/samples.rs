@@ -70,7 +70,7 @@ impl<'a> Samples<'a> {
     /// Estimates noise and magnitude anew, after values were taken out.
     pub(crate) fn look_again(&mut self) {
         let declared_g = self.bench.accel_noise_g;
-        self.noise = [0, 1, 2].map(|axis| {
+        self.noise = core::array::from_fn(|axis| {
             let column = self.accel_g.iter().map(|row| row[axis]);
             column_noise(self.time_s, &column.collect::<Vec<_>>(), declared_g)
         });

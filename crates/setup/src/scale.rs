@@ -1,11 +1,12 @@
 //! Gains of single accelerometers.
 
+use gyrocal_record::AXES;
 use nalgebra::{Matrix3, Vector3};
 
 use crate::finding::SetupFinding;
 use crate::kind::SetupKind;
 use crate::samples::{Complete, Samples};
-use crate::text::{AXES, number};
+use crate::text::number;
 
 /// A gain that is off by less is left to the fine diagnosis.
 const LEAST_ERROR: f64 = 0.01;
@@ -64,7 +65,7 @@ pub(crate) fn find(samples: &mut Samples<'_>) -> Vec<SetupFinding> {
     }
     if !findings.is_empty() {
         for row in &mut samples.accel_g {
-            *row = [0, 1, 2].map(|axis| row[axis] / found.gains[axis]);
+            *row = core::array::from_fn(|axis| row[axis] / found.gains[axis]);
         }
         samples.look_again();
     }

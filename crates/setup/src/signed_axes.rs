@@ -1,5 +1,7 @@
 //! The 48 ways to exchange and negate three axes.
 
+use gyrocal_record::AXES;
+
 use crate::vector::Vector;
 
 /// Axes that are columns of a record, exchanged and with signs.
@@ -10,8 +12,6 @@ pub struct SignedAxes {
     /// For each axis that was meant, whether the column holds its negative.
     negated: [bool; 3],
 }
-
-const LETTERS: [&str; 3] = ["x", "y", "z"];
 
 /// All orders of three columns: even permutations first.
 const ORDERS: [[usize; 3]; 6] = [
@@ -43,7 +43,7 @@ impl SignedAxes {
     /// The components of a vector along the axes that were meant.
     #[must_use]
     pub fn apply(self, row: Vector) -> Vector {
-        [0, 1, 2].map(|axis| {
+        core::array::from_fn(|axis| {
             let value = row[self.columns[axis]];
             if self.negated[axis] { -value } else { value }
         })
@@ -78,7 +78,7 @@ impl SignedAxes {
         if self.columns == [0, 1, 2] {
             let negated: Vec<&str> = (0..3)
                 .filter(|axis| self.negated[*axis])
-                .map(|axis| LETTERS[axis])
+                .map(|axis| AXES[axis])
                 .collect();
             return match negated[..] {
                 [] => "the axes as given".to_owned(),
@@ -91,14 +91,14 @@ impl SignedAxes {
         if let (Some(fixed), [false, false, false]) = (fixed, self.negated) {
             let others: Vec<&str> = (0..3)
                 .filter(|axis| *axis != fixed)
-                .map(|axis| LETTERS[axis])
+                .map(|axis| AXES[axis])
                 .collect();
             return format!("axes {} and {} exchanged", others[0], others[1]);
         }
         let parts: Vec<String> = (0..3)
             .map(|axis| {
                 let sign = if self.negated[axis] { "-" } else { "" };
-                format!("{} = {sign}{}", LETTERS[axis], LETTERS[self.columns[axis]])
+                format!("{} = {sign}{}", AXES[axis], AXES[self.columns[axis]])
             })
             .collect();
         format!("columns exchanged, {}", parts.join(", "))

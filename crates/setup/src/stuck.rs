@@ -1,10 +1,12 @@
 //! Accelerometers that repeat one value.
 
+use gyrocal_record::AXES;
+
 use crate::coded::of_rows;
 use crate::finding::SetupFinding;
 use crate::kind::SetupKind;
 use crate::samples::Samples;
-use crate::text::{AXES, counted, number, row, rows};
+use crate::text::{counted, number, row, rows};
 
 /// Equal values in so many successive rows may be stuck; the magnitude decides.
 const LEAST_ROWS: usize = 3;
@@ -54,7 +56,7 @@ fn frozen(samples: &Samples<'_>) -> Option<SetupFinding> {
         let equal = values.chunk_by(|a, b| a == b).map(<[f64]>::len).max();
         (equal.unwrap_or(0), values.len())
     };
-    let counts = [0, 1, 2].map(most_equal);
+    let counts: [(usize, usize); 3] = core::array::from_fn(most_equal);
     let is_frozen = |(equal, all): &(usize, usize)| *equal as f64 >= FROZEN_SHARE * *all as f64;
     if samples.accel_g.len() < FROZEN_ROWS || !counts.iter().all(is_frozen) {
         return None;

@@ -2,8 +2,7 @@
 
 use core::ops::Range;
 
-/// Letters of the axes, in the order of arrays.
-pub(crate) const AXES: [&str; 3] = ["x", "y", "z"];
+use gyrocal_record::AXES;
 
 /// `accelerometer x`, or `accelerometers x and y`.
 pub(crate) fn accelerometers(axes: &[usize]) -> String {

@@ -21,7 +21,7 @@ pub(crate) fn norm(a: Vector) -> f64 {
 
 /// `a + scale b`.
 pub(crate) fn plus(a: Vector, scale: f64, b: Vector) -> Vector {
-    [0, 1, 2].map(|i| a[i] + scale * b[i])
+    core::array::from_fn(|i| a[i] + scale * b[i])
 }
 
 /// `a - b`.

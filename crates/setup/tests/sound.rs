@@ -123,7 +123,7 @@ fn a_bias_of_one_accelerometer_is_no_gravity() {
                 row[axis] += 3e-4;
             }
             // Over whole days the mean of gravity is along the axis of the Earth.
-            let mean = [0, 1, 2].map(|axis| {
+            let mean: [f64; 3] = core::array::from_fn(|axis| {
                 let column = record.accel_g.iter().map(|row| row[axis]);
                 column.filter(|value| !value.is_nan()).sum::<f64>()
             });

@@ -145,7 +145,7 @@ impl<'a> DenseProblem<'a> {
             let rate = |attitude: &Matrix3<f64>| {
                 let own = Vector3::from_fn(|axis, _| {
                     let a = gravity_g * attitude[(axis, 2)];
-                    let [bias, first, second] = [0, 1, 2].map(|k| drift[3 * axis + k]);
+                    let [bias, first, second] = core::array::from_fn(|k| drift[3 * axis + k]);
                     (bias + first * a + second * a * a + noise[axis]) * DEG_PER_H
                 });
                 -(own - attitude * earth_rate).cross_matrix() * attitude

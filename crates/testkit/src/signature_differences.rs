@@ -96,7 +96,7 @@ pub fn compare(scenario: &Scenario) -> Result<Vec<Compared>, Error> {
     let first = PARAMETERS.len() + further.len();
     for probe in &probes {
         let change_g = change_g(&quiet, probe)?;
-        further.extend([0, 1, 2].map(|axis| Column::Output {
+        further.extend((0..3).map(|axis| Column::Output {
             output: axis,
             change: change_g.iter().map(|row| row[axis]).collect(),
         }));

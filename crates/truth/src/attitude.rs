@@ -86,7 +86,7 @@ impl Attitude {
             self.resolve([0.0, 1.0, 0.0]),
             self.resolve([0.0, 0.0, 1.0]),
         ];
-        [0, 1, 2].map(|row| columns.map(|column| column[row]))
+        core::array::from_fn(|row| columns.map(|column| column[row]))
     }
 
     /// A vector given in `s`, resolved in `t`.
@@ -95,7 +95,7 @@ impl Attitude {
         // The frame turns, so the components of a fixed vector turn the other way.
         let twice = cross(self.vector, in_s).map(|component| 2.0 * component);
         let again = cross(self.vector, twice);
-        [0, 1, 2].map(|i| in_s[i] - self.w * twice[i] + again[i])
+        core::array::from_fn(|i| in_s[i] - self.w * twice[i] + again[i])
     }
 
     /// The attitude of `s` against `t`.
@@ -114,7 +114,7 @@ impl Attitude {
         let cross = cross(a.vector, b.vector);
         Self {
             w: a.w * b.w - dot(a.vector, b.vector),
-            vector: [0, 1, 2].map(|i| a.w * b.vector[i] + b.w * a.vector[i] + cross[i]),
+            vector: core::array::from_fn(|i| a.w * b.vector[i] + b.w * a.vector[i] + cross[i]),
         }
     }
 
@@ -143,7 +143,7 @@ impl Attitude {
     /// Rate of change of the four numbers when `t` turns at a rate given in its own axes.
     pub(crate) fn derivative(self, rate_rad_per_s: [f64; 3]) -> [f64; 4] {
         let cross = cross(self.vector, rate_rad_per_s);
-        let [x, y, z] = [0, 1, 2].map(|i| 0.5 * (self.w * rate_rad_per_s[i] + cross[i]));
+        let [x, y, z] = core::array::from_fn(|i| 0.5 * (self.w * rate_rad_per_s[i] + cross[i]));
         [-0.5 * dot(self.vector, rate_rad_per_s), x, y, z]
     }
 
@@ -151,7 +151,7 @@ impl Attitude {
     pub(crate) fn moved(self, scale: f64, rates: [f64; 4]) -> Self {
         Self {
             w: self.w + scale * rates[0],
-            vector: [0, 1, 2].map(|i| self.vector[i] + scale * rates[i + 1]),
+            vector: core::array::from_fn(|i| self.vector[i] + scale * rates[i + 1]),
         }
     }
 
@@ -213,7 +213,7 @@ mod tests {
     }
 
     fn product(a: [[f64; 3]; 3], b: [[f64; 3]; 3]) -> [[f64; 3]; 3] {
-        a.map(|row| [0, 1, 2].map(|j| (0..3).map(|k| row[k] * b[k][j]).sum()))
+        a.map(|row| core::array::from_fn(|j| (0..3).map(|k| row[k] * b[k][j]).sum()))
     }
 
     fn worst(a: [[f64; 3]; 3], b: [[f64; 3]; 3]) -> f64 {

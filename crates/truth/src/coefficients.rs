@@ -34,7 +34,7 @@ impl Coefficients {
     /// Drift of the three gyros under a specific force in platform axes \[deg/h\].
     #[must_use]
     pub fn drift_deg_per_h(&self, accel_g: [f64; 3]) -> [f64; 3] {
-        [0, 1, 2].map(|gyro| {
+        core::array::from_fn(|gyro| {
             let along = accel_g[gyro];
             self.bias_deg_per_h[gyro]
                 + along * (self.g_deg_per_h_per_g[gyro] + along * self.gg_deg_per_h_per_g2[gyro])

@@ -206,7 +206,7 @@ impl<'a> DriftLaw<'a> {
         for term in self.terms {
             if let Term::Drift(added) = term {
                 let added = added(moment);
-                drift = [0, 1, 2].map(|gyro| drift[gyro] + added[gyro]);
+                drift = core::array::from_fn(|gyro| drift[gyro] + added[gyro]);
             }
         }
         drift

@@ -73,7 +73,7 @@ impl RotatingVector {
         let still = axis.map(|component| component * along);
         Self {
             still,
-            across: [0, 1, 2].map(|i| vector[i] - still[i]),
+            across: core::array::from_fn(|i| vector[i] - still[i]),
             ahead: cross(axis, vector),
         }
     }
@@ -81,6 +81,6 @@ impl RotatingVector {
     fn at(&self, earth_angle: EarthAngle) -> [f64; 3] {
         let cosine = 1.0 - 2.0 * earth_angle.sin_half * earth_angle.sin_half;
         let sine = 2.0 * earth_angle.sin_half * earth_angle.cos_half;
-        [0, 1, 2].map(|i| self.still[i] + cosine * self.across[i] + sine * self.ahead[i])
+        core::array::from_fn(|i| self.still[i] + cosine * self.across[i] + sine * self.ahead[i])
     }
 }

@@ -1,6 +1,6 @@
 //! Names of the effects that a scenario can hide, and the parameters of each.
 
-use gyrocal_record::Bound;
+use gyrocal_record::{AXES, Bound};
 
 use crate::temperature::OfTemperature;
 
@@ -197,7 +197,7 @@ impl Effect {
     /// Every effect with its id.
     pub(crate) fn all() -> Vec<(String, Self)> {
         let mut all = Vec::new();
-        for (gyro, letter) in LETTERS.into_iter().enumerate() {
+        for (gyro, letter) in AXES.into_iter().enumerate() {
             for powers in products() {
                 let name = format!("gyro_{letter}.{}", product_name(powers));
                 all.push((name, Self::GyroProduct { gyro, powers }));
@@ -218,7 +218,7 @@ impl Effect {
                 ("dead_zone", Self::GyroDeadZone(gyro)),
             ];
             all.extend(single.map(|(name, effect)| (format!("gyro_{letter}.{name}"), effect)));
-            for (axis, other) in LETTERS.into_iter().enumerate() {
+            for (axis, other) in AXES.into_iter().enumerate() {
                 let effect = Self::GyroSign { gyro, axis };
                 all.push((format!("gyro_{letter}.sign_{other}"), effect));
                 if axis != gyro {
@@ -230,7 +230,7 @@ impl Effect {
                 }
             }
         }
-        for (axis, letter) in LETTERS.into_iter().enumerate() {
+        for (axis, letter) in AXES.into_iter().enumerate() {
             for of in OfTemperature::ALL {
                 let effect = Self::AccelTemperature { axis, of };
                 all.push((format!("accel_{letter}.{}", of.name()), effect));
@@ -249,7 +249,7 @@ impl Effect {
             all.extend(single.map(|(name, effect)| (format!("accel_{letter}.{name}"), effect)));
         }
         for axes in [[0, 1], [0, 2], [1, 2]] {
-            let [i, j] = axes.map(|axis| LETTERS[axis]);
+            let [i, j] = axes.map(|axis| AXES[axis]);
             let name = format!("accel_{i}{j}.nonorthogonality");
             all.push((name, Self::Nonorthogonality(axes)));
         }
@@ -267,8 +267,6 @@ impl Effect {
         all
     }
 }
-
-const LETTERS: [char; 3] = ['x', 'y', 'z'];
 
 const fn not_negative(unit: &'static str) -> Parameter {
     Parameter {
@@ -303,7 +301,7 @@ fn product_name(powers: [u8; 3]) -> String {
     if powers == [0; 3] {
         return "bias".to_owned();
     }
-    let letters = LETTERS
+    let letters = AXES
         .into_iter()
         .zip(powers)
         .flat_map(|(letter, power)| core::iter::repeat_n(letter, power.into()));

@@ -53,11 +53,12 @@ pub fn euler_rule(scenario: &Scenario) -> Result<Simulation, Error> {
                 .coefficients
                 .drift_deg_per_h(platform_c_enu.resolve(up_enu_g));
             let earth_rate = platform_c_enu.resolve(earth_rate_enu);
-            let relative_rate = [0, 1, 2].map(|axis| {
+            let relative_rate = core::array::from_fn(|axis| {
                 (drift[axis] + noise[axis]) * RAD_PER_S_PER_DEG_PER_H - earth_rate[axis]
             });
             let rates = angle_rates(angles_rad, relative_rate);
-            angles_rad = [0, 1, 2].map(|axis| angles_rad[axis] + scenario.interval_s * rates[axis]);
+            angles_rad =
+                core::array::from_fn(|axis| angles_rad[axis] + scenario.interval_s * rates[axis]);
         }
         let platform_c_enu = Attitude::from_angles_rad(angles_rad);
         let accel_g = platform_c_enu.resolve(up_enu_g);

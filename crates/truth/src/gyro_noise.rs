@@ -44,10 +44,10 @@ impl GyroNoise {
     /// The mean of the noise over the next interval \[deg/h\].
     pub(crate) fn next_deg_per_h(&mut self, interval_s: f64) -> [f64; 3] {
         let normals = self.white.three_normals();
-        let mut mean = [0, 1, 2].map(|gyro| self.held_deg_per_h[gyro] * normals[gyro]);
+        let mut mean = core::array::from_fn(|gyro| self.held_deg_per_h[gyro] * normals[gyro]);
         if let Some(walk) = &mut self.walk {
             let drift = walk.next_deg_per_h(interval_s);
-            mean = [0, 1, 2].map(|gyro| mean[gyro] + drift[gyro]);
+            mean = core::array::from_fn(|gyro| mean[gyro] + drift[gyro]);
         }
         mean
     }

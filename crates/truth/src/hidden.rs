@@ -134,7 +134,7 @@ impl Hidden {
 
     /// The first three values.
     pub(crate) fn three(&self) -> [f64; 3] {
-        [0, 1, 2].map(|index| self.value(index))
+        core::array::from_fn(|index| self.value(index))
     }
 }
 

@@ -248,5 +248,5 @@ impl<'a> Motion<'a> {
 }
 
 fn sum(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [0, 1, 2].map(|i| a[i] + b[i])
+    core::array::from_fn(|i| a[i] + b[i])
 }

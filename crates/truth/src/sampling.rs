@@ -130,12 +130,13 @@ impl AccelNoise {
             // First-order correlation, of the same variance in every sample.
             Some(last) if self.correlation != 0.0 => {
                 let share = (1.0 - self.correlation * self.correlation).sqrt();
-                [0, 1, 2].map(|axis| self.correlation * last[axis] + share * fresh[axis])
+                core::array::from_fn(|axis| self.correlation * last[axis] + share * fresh[axis])
             }
             _ => fresh,
         };
         self.last = Some(noise);
-        let mut sample = [0, 1, 2].map(|axis| output_g[axis] + self.sigma_g[axis] * noise[axis]);
+        let mut sample =
+            core::array::from_fn(|axis| output_g[axis] + self.sigma_g[axis] * noise[axis]);
         let mut which = [false; 3];
         if let Some(outliers) = &mut self.outliers {
             for (component, is_outlier) in sample.iter_mut().zip(&mut which) {

@@ -113,8 +113,9 @@ impl Scenario {
     pub fn platform(&self) -> Platform {
         let error = Stream::new(self.seed, Purpose::InitialAngles).three_normals();
         let declared = self.declared_angles_deg();
-        let angles_deg = [0, 1, 2]
-            .map(|axis| declared[axis] + self.initial_angles_sigma_deg[axis] * error[axis]);
+        let angles_deg: [f64; 3] = core::array::from_fn(|axis| {
+            declared[axis] + self.initial_angles_sigma_deg[axis] * error[axis]
+        });
         let mut platform = Platform {
             latitude_deg: self.latitude_deg,
             specific_force_at_rest_g: self.bench_gravity(),

@@ -66,7 +66,7 @@ impl<'a> Sensing<'a> {
         for term in self.terms {
             if let Term::Output(error) = term {
                 let error = error(moment);
-                output = [0, 1, 2].map(|axis| output[axis] + error[axis]);
+                output = core::array::from_fn(|axis| output[axis] + error[axis]);
             }
         }
         output

@@ -28,7 +28,9 @@ fn turned(vector: [f64; 3], axis: [f64; 3], angle_rad: f64) -> [f64; 3] {
         axis[2] * vector[0] - axis[0] * vector[2],
         axis[0] * vector[1] - axis[1] * vector[0],
     ];
-    [0, 1, 2].map(|i| vector[i] * cosine + cross[i] * sine + axis[i] * along * (1.0 - cosine))
+    core::array::from_fn(|i| {
+        vector[i] * cosine + cross[i] * sine + axis[i] * along * (1.0 - cosine)
+    })
 }
 
 fn rad_per_s(deg_per_h: f64) -> f64 {

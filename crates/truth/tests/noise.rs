@@ -19,7 +19,7 @@ fn accel_noise(simulation: &Simulation) -> Vec<[f64; 3]> {
         .zip(attitudes)
         .map(|(sample, platform_c_enu)| {
             let ideal = platform_c_enu.resolve([0.0, 0.0, 1.0]);
-            [0, 1, 2].map(|axis| sample[axis] - ideal[axis])
+            core::array::from_fn(|axis| sample[axis] - ideal[axis])
         })
         .collect()
 }
@@ -81,7 +81,7 @@ fn the_declared_attitude_is_wrong_by_its_sigma() {
         };
         let declared = scenario.declared_angles_deg();
         let truly = scenario.platform().initial_platform_c_enu.angles_deg();
-        [0, 1, 2].map(|axis| truly[axis] - declared[axis])
+        (0..3).map(move |axis| truly[axis] - declared[axis])
     });
     let ratio = rms(errors_deg) / 0.02;
     // 1800 numbers: 1.7% is one sigma.

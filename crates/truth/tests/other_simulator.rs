@@ -28,7 +28,7 @@ fn the_record_s11_is_followed_over_five_days() {
         .accel_g
         .iter()
         .zip(ideal)
-        .flat_map(|(seen, ideal)| [0, 1, 2].map(|axis| (seen[axis] - ideal[axis]).abs()))
+        .flat_map(|(seen, ideal)| (0..3).map(move |axis| (seen[axis] - ideal[axis]).abs()))
         .fold(0.0, f64::max);
     // The platform was off by 0.01 deg in each angle (1.7e-4 rad, three sigma 5e-4), the gyro
     // noise turned it by 5e-5 rad in five days, and the sum feeds back through the drift law.

@@ -25,7 +25,7 @@ const VARIABLES: usize = 3 + Unit::PARAMETERS;
 type Matrix = [[f64; 3]; 3];
 
 fn matrix(elements: &[f64; 9]) -> Matrix {
-    [0, 3, 6].map(|start| [0, 1, 2].map(|column| elements[start + column]))
+    [0, 3, 6].map(|start| core::array::from_fn(|column| elements[start + column]))
 }
 
 fn inputs<T: Scalar>(state: &State) -> UnitInputs<T> {
@@ -195,7 +195,7 @@ fn the_drift_that_is_compensated_is_that_of_the_equations_in_the_axes_of_the_gyr
     let mut filter = own_filter();
     let force = [0.3_f64, -0.5, 0.8];
     let expected: [f64; 3] = core::array::from_fn(|i| {
-        let [bias, along, square] = [0, 1, 2].map(|term| DRIFT[3 * i + term]);
+        let [bias, along, square] = core::array::from_fn(|term| DRIFT[3 * i + term]);
         bias + force[i] * (along + force[i] * square)
     });
     for state in states(Purpose::ScalarTypes, POINTS) {

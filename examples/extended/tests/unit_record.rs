@@ -22,7 +22,7 @@ const ACCEL_X_RAMP: f64 = 8e-6;
 fn record(seed: u64) -> StrapdownUnit {
     let gyro_error = |force: [f64; 3], days: f64| {
         let mut error: [f64; 3] = core::array::from_fn(|i| {
-            let [bias, along, square] = [0, 1, 2].map(|term| DRIFT[3 * i + term]);
+            let [bias, along, square] = core::array::from_fn(|term| DRIFT[3 * i + term]);
             bias + force[i] * (along + force[i] * square)
         });
         error[1] += GYRO_Y_RAMP * days;

@@ -117,11 +117,12 @@ fn turn(jump: &mut StateJump, axes: &GyroAxes, row: usize) {
     };
     jump.score = along(&jump.score);
     jump.outputs = along(&jump.outputs);
-    let half = DMatrix::from_columns(&[0, 1, 2].map(|i| {
+    let half = DMatrix::from_columns(&core::array::from_fn::<_, 3, _>(|i| {
         let column = jump.information.column(i).into_owned();
         along(&column)
     }));
     let whole = half.transpose();
-    jump.information =
-        DMatrix::from_columns(&[0, 1, 2].map(|i| along(&whole.column(i).into_owned())));
+    jump.information = DMatrix::from_columns(&core::array::from_fn::<_, 3, _>(|i| {
+        along(&whole.column(i).into_owned())
+    }));
 }

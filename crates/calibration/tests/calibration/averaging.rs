@@ -28,7 +28,7 @@ fn at(record: &Record, time_s: f64) -> [f64; 3] {
     let row = (place.floor() as usize).min(record.len() - 2);
     let share = place - row as f64;
     // Curvature over a second is 1e-9 g.
-    [0, 1, 2].map(|axis| {
+    core::array::from_fn(|axis| {
         let [a, b] = [0, 1].map(|next| record.accel_g[row + next][axis]);
         a + share * (b - a)
     })

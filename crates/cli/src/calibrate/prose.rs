@@ -7,14 +7,12 @@ use gyrocal_calibration::{
     AzimuthSearch, Calibration, ConsiderSensitivity, NoiseDifference, NoiseEstimate, NoiseRatio,
     RunResult, SIGNIFICANT_WALK_SHARE, SiteQuantity, times_overlap,
 };
-use gyrocal_record::{CalibrationMethod, FittedEffects, printable_path};
+use gyrocal_record::{AXES, CalibrationMethod, FittedEffects, printable_path};
 
 use super::inputs::Measurement;
 use super::{CalibrationRun, tables};
 use crate::noise::ratio_text;
 use crate::text::paragraph;
-
-const AXES: [&str; 3] = ["x", "y", "z"];
 
 pub(super) fn summary(found: &CalibrationRun) -> String {
     let calibration = &found.calibration;

@@ -2,13 +2,11 @@
 
 use comfy_table::Cell;
 use gyrocal_calibration::{BIASES, Calibration, ConsiderSensitivity, SiteQuantity};
-use gyrocal_record::{FittedEffects, printable_path};
+use gyrocal_record::{AXES, FittedEffects, printable_path};
 use gyrocal_statistics::format;
 
 use super::CalibrationRun;
 use crate::tables::{right, table};
-
-const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// The coefficients with their sigmas.
 pub(super) fn coefficients(calibration: &Calibration) -> String {

@@ -1,7 +1,7 @@
 //! Limits and goals of the command line.
 
 use gyrocal_design::Goal;
-use gyrocal_record::{Bench, GimbalLimits};
+use gyrocal_record::{AXES, Bench, GimbalLimits};
 
 use super::PlanArguments;
 use crate::Failure;
@@ -16,7 +16,7 @@ pub(super) fn limit(text: &str) -> Result<(usize, [f64; 2]), String> {
         )
     };
     let (axis, range) = text.split_once('=').ok_or_else(wrong)?;
-    let axis = GimbalLimits::KEYS
+    let axis = AXES
         .iter()
         .position(|key| *key == axis.trim())
         .ok_or_else(wrong)?;
@@ -37,7 +37,7 @@ pub(super) fn wished_sigma(text: &str) -> Result<(String, f64), String> {
 
 /// Refuses repeated limits of one axis.
 pub(super) fn refuse_repeated(given: &[(usize, [f64; 2])]) -> Result<(), Failure> {
-    for (axis, key) in GimbalLimits::KEYS.iter().enumerate() {
+    for (axis, key) in AXES.iter().enumerate() {
         if given.iter().filter(|(other, _)| *other == axis).count() > 1 {
             return Err(Failure::Usage(format!(
                 "--limits of {key} are given more than once; give one FROM..TO for each axis"

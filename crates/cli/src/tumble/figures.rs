@@ -4,6 +4,7 @@ use std::path::Path;
 
 use gyrocal::generated::catalogue::OUTPUTS;
 use gyrocal_instruments::multi_position::{Finding, MultiPositionReport, PreparedTest};
+use gyrocal_record::AXES;
 use gyrocal_report::{ResidualChannel, Residuals, TermContribution, TermContributions};
 use gyrocal_statistics::format;
 
@@ -136,7 +137,7 @@ fn residuals(
         time_s: prepared.positions.time_s.clone(),
         channels: (0..3)
             .map(|axis| ResidualChannel {
-                name: ["x", "y", "z"][axis].to_owned(),
+                name: AXES[axis].to_owned(),
                 before: before[axis].clone(),
                 after: found.then(|| after[axis].clone()),
                 sigma: prepared.positions.rms_sigma_deg_per_h(axis),

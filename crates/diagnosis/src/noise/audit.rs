@@ -140,7 +140,7 @@ pub fn audit_noise(
         findings,
         accel_ratio: fit
             .as_ref()
-            .map(|fit| [0, 1, 2].map(|axis| ratio(fit, axis))),
+            .map(|fit| core::array::from_fn(|axis| ratio(fit, axis))),
         correlation: fit.as_ref().map(|fit| Estimate {
             name: "correlation",
             estimate: fit.model.values[CORRELATION],

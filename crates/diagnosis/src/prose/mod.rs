@@ -130,6 +130,3 @@ pub fn diagnosis(result: &DiagnosisResult) -> Vec<Block> {
     blocks.extend(limits::untested(result));
     blocks
 }
-
-/// Letters of the axes, in the order of arrays.
-const AXES: [&str; 3] = ["x", "y", "z"];

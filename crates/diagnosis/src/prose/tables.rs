@@ -1,12 +1,12 @@
 //! The tables of an answer.
 
-use gyrocal_record::NoiseRatioReport;
+use gyrocal_record::{AXES, NoiseRatioReport};
 use gyrocal_statistics::format::{self, p_cell};
 
 use super::catalogue::is_correlation;
 use super::findings::{likelihood, value};
 use super::format::{short, with_sigma};
-use super::{AXES, Block, Column, Table};
+use super::{Block, Column, Table};
 use crate::result::{
     CoefficientEstimate, Coefficients, DiagnosisResult, Finding, FindingKind, Gain, Residuals,
 };

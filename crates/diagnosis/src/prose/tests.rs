@@ -1,8 +1,8 @@
 //! The tests beside the search: magnitude, filter, whiteness, Allan deviation, noise audit.
 
+use gyrocal_record::AXES;
 use gyrocal_statistics::format::{p_bound, p_value};
 
-use super::AXES;
 use super::format::{counted, duration, short, with_sigma};
 use crate::result::{
     AllanCourse, DiagnosisResult, FindingKind, ResidualTest, ResidualVerdict, UnmodelledPattern,

@@ -17,7 +17,7 @@ const ACCEL_RAMP: f64 = 8e-6;
 
 fn gyro_error(force: [f64; 3], days: f64) -> [f64; 3] {
     let mut error = core::array::from_fn(|i| {
-        let [bias, along, square] = [0, 1, 2].map(|term| DRIFT[3 * i + term]);
+        let [bias, along, square] = core::array::from_fn(|term| DRIFT[3 * i + term]);
         bias + force[i] * (along + force[i] * square)
     });
     error[1] += GYRO_RAMP * days;

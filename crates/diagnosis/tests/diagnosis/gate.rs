@@ -13,7 +13,7 @@ use gyrocal_truth::{Coefficients, InitialAttitude, Scenario, Simulation, simulat
 /// A record without angles, with coefficients from the prior of 1 deg/h.
 fn record(seed: u64, latitude_deg: f64, hours: f64) -> Simulation {
     let mut random = Draw::new(seed, 0);
-    let mut three = || [0, 1, 2].map(|_| random.normal());
+    let mut three = || core::array::from_fn(|_| random.normal());
     let scenario = Scenario {
         seed,
         latitude_deg,

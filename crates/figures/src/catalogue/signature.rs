@@ -3,6 +3,7 @@
 use gyrocal::Effect;
 use gyrocal::effect::{EffectKind, EffectParameter, NoiseProperty, Role};
 use gyrocal_calibration::{FittedPlatform, NoiseModel, Options, Run};
+use gyrocal_record::AXES;
 use gyrocal_report::{ResidualChannel, Residuals};
 use gyrocal_statistics::format;
 use gyrocal_testkit::workspace;
@@ -132,7 +133,7 @@ impl Shown {
     }
 
     fn drawn(self, effect: &Effect, scenario: &Scenario) -> Residuals {
-        let channels = ["x", "y", "z"].into_iter().enumerate();
+        let channels = AXES.into_iter().enumerate();
         let channels = channels.map(|(axis, name)| ResidualChannel {
             name: name.to_owned(),
             before: self.residual_g.iter().map(|row| row[axis]).collect(),
@@ -224,6 +225,6 @@ fn left_by_the_fit(simulation: &Simulation, scenario: &Scenario) -> Result<Vec<[
 
 fn difference(one: &[[f64; 3]], other: &[[f64; 3]]) -> Vec<[f64; 3]> {
     let rows = one.iter().zip(other);
-    rows.map(|(one, other)| [0, 1, 2].map(|axis| one[axis] - other[axis]))
+    rows.map(|(one, other)| core::array::from_fn(|axis| one[axis] - other[axis]))
         .collect()
 }

@@ -2,6 +2,7 @@
 
 use gyrocal_instruments::multi_position::{Term, few_position_test, prepare_logs};
 use gyrocal_instruments::{Description, InstrumentError, Log};
+use gyrocal_record::AXES;
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_statistics::{NORMAL_97_5, Proportion};
 use gyrocal_testkit::position_test::{UnitErrors, positions, stop};
@@ -140,7 +141,7 @@ fn test(count: usize, seed: u64) -> Result<Test, InstrumentError> {
         let all = all.filter(|(coefficient, _)| coefficient.determined);
         all.map(|(coefficient, truth)| contains(*truth, coefficient.estimate, coefficient.sigma))
     });
-    let name = |axis: usize| ["x", "y", "z"][axis];
+    let name = |axis: usize| AXES[axis];
     let found = report.findings.iter().map(|finding| {
         let names = core::iter::once(&finding.effect).chain(&finding.alternatives);
         names.cloned().collect()

@@ -2,6 +2,7 @@
 
 use gyrocal_instruments::rates::{RateReport, RateSettings, evaluate_rates};
 use gyrocal_instruments::{Description, InstrumentError, Log};
+use gyrocal_record::AXES;
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_statistics::{NORMAL_97_5, Proportion, root_mean_square};
 use nalgebra::{Matrix3, Vector3};
@@ -245,7 +246,7 @@ fn table_test(seed: u64) -> Result<Vec<bool>, InstrumentError> {
         logs.push(log);
     }
     let report = evaluated(&logs, &unit, "[table]\ncolumn = \"t\"\nunit = \"rad/s\"\n")?;
-    let axes = ["x", "y", "z"];
+    let axes = AXES;
     let mut hits = Vec::new();
     for (gyro, law) in report.gyros.iter().enumerate() {
         let mut truths = vec![(format!("gyro_{}.bias", axes[gyro]), unit.bias[gyro])];

@@ -6,6 +6,7 @@ use gyrocal_instruments::multi_position::{
     Alternative, Finding, MultiPositionReport, MultiPositionSettings, multi_position_test, prepare,
 };
 use gyrocal_instruments::{Description, Log, StopSettings, find_stops};
+use gyrocal_record::AXES;
 
 use super::{Measured, data, run_time};
 use crate::error::Error;
@@ -241,7 +242,7 @@ fn gain(measured: &mut Measured, report: &MultiPositionReport) -> Result<(), Err
             least as f64,
         ),
     ]);
-    for (axis, name) in ["x", "y", "z"].iter().enumerate() {
+    for (axis, name) in AXES.iter().enumerate() {
         measured.figures.push(Figure::within(
             &format!("xsens gyro_{name}: error at unused stops, extended over nominal law"),
             // Better by more than a tenth, the scatter of an rms of 38 values.

@@ -1,7 +1,7 @@
 //! The paper's bench, its simulated records, and the calibration of one record.
 
 use gyrocal_calibration::{Calibration, Options, calibrate};
-use gyrocal_record::Bench;
+use gyrocal_record::{AXES, Bench};
 use gyrocal_truth::{Coefficients, Scenario, Simulation, euler_rule, simulate};
 use nalgebra::{SMatrix, SVector};
 use rayon::prelude::*;
@@ -132,7 +132,7 @@ pub(super) fn describe(values: &mut Values) {
     let scenario = scenario(SHOWN_SEED, PAPER_DAYS);
     let mut table = Table::new(["gyro", "D_F (deg/h)", "D_I (deg/h/g)", "D_II (deg/h/g²)"]);
     let of = scenario.coefficients;
-    for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+    for (axis, name) in AXES.into_iter().enumerate() {
         table.row([
             name.to_owned(),
             fixed(of.bias_deg_per_h[axis], 2),

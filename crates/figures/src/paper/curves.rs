@@ -2,6 +2,7 @@
 
 use gyrocal::PlatformFilter;
 use gyrocal_calibration::{Options, declared_attitude, filter_settings};
+use gyrocal_record::AXES;
 use gyrocal_report::{
     ComparedEstimate, ComparedQuantity, Comparison, Convergence, EstimateHistory, ParameterHistory,
     Picture, ResidualChannel, Residuals,
@@ -112,7 +113,7 @@ fn convergence(gyro: usize, tracks: &[Track; 3], batch: &Judged) -> Convergence 
             default.coefficient("C", index, batch.estimate[index]),
         ]
     });
-    let name = ["x", "y", "z"][gyro];
+    let name = AXES[gyro];
     Convergence {
         title: format!(
             "Gyro {name}: the paper's filter converges only on data simulated by its own rule"
@@ -135,7 +136,7 @@ fn innovations(exact: &Simulation, paper: Track, default: Track) -> Residuals {
             .to_owned(),
         subtitle: format!("One record, seed {SHOWN_SEED}"),
         time_s: exact.record.time_s.clone(),
-        channels: ["x", "y", "z"]
+        channels: AXES
             .into_iter()
             .zip(paper.innovation_g.into_iter().zip(default.innovation_g))
             .map(|(name, (before, after))| ResidualChannel {

@@ -5,6 +5,7 @@ use gyrocal::EFFECTS;
 use gyrocal::effect::EffectKind;
 use gyrocal_diagnosis::{DiagnoseOptions, DiagnosisResult, diagnose};
 use gyrocal_evaluation::{EvaluationError, scenario};
+use gyrocal_record::AXES;
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{Hidden, Scenario, Simulation, Term, simulate, simulate_with};
 use serde::{Deserialize, Serialize};
@@ -178,7 +179,7 @@ fn record(noise: Noise, seed: u64) -> Result<Noisy, EvaluationError> {
     let mut hidden = Vec::new();
     let mut walks: Vec<(String, f64)> = Vec::new();
     if random.uniform() < 0.5 || matches!(noise, Noise::Clean) {
-        for axis in ["x", "y", "z"] {
+        for axis in AXES {
             for instrument in ["gyro", "accel"] {
                 let ratio = random.log_uniform(MISDECLARED);
                 let id = format!("{instrument}_{axis}.noise");
@@ -190,7 +191,7 @@ fn record(noise: Noise, seed: u64) -> Result<Noisy, EvaluationError> {
         Noise::Walks(count) => {
             let first = (3.0 * random.uniform()) as usize;
             for gyro in 0..count {
-                let axis = ["x", "y", "z"][(first + gyro) % 3];
+                let axis = AXES[(first + gyro) % 3];
                 let size = random.log_uniform(WALKS);
                 let id = format!("gyro_{axis}.random_walk");
                 hidden.push(Hidden::new(&id, &[("size", size)])?);

@@ -187,7 +187,7 @@ fn undecided_record(seed: u64) -> Result<Simulation, Error> {
         (between([20.0, 70.0]), between([7.0, 12.0]))
     };
     let sign = random.sign();
-    let mut three = || [0, 1, 2].map(|_| random.normal());
+    let mut three = || core::array::from_fn(|_| random.normal());
     let scenario = Scenario {
         seed,
         latitude_deg: sign * size_deg,

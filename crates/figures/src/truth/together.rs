@@ -4,6 +4,7 @@
 use gyrocal_diagnosis::result::Finding;
 use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
 use gyrocal_evaluation::{EvaluationError, inject_any, scenario};
+use gyrocal_record::AXES;
 use gyrocal_statistics::Proportion;
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{Hidden, Scenario, simulate};
@@ -97,7 +98,7 @@ fn record(seed: u64) -> Result<Mixed, EvaluationError> {
     if walking.is_empty() {
         walking.push((3.0 * random.uniform()) as usize % 3);
     }
-    let axes = ["x", "y", "z"];
+    let axes = AXES;
     for gyro in &walking {
         let size = random.log_uniform(WALKS);
         let id = format!("gyro_{}.random_walk", axes[*gyro]);

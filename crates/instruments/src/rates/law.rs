@@ -104,7 +104,7 @@ impl Data<'_> {
             false => Term::Cross(axis),
         };
         let of_table = self.logs.iter().any(|log| log.table.is_some());
-        let own_first = [0, 1, 2].map(|step| (self.gyro + step) % 3);
+        let own_first: [usize; 3] = core::array::from_fn(|step| (self.gyro + step) % 3);
         let turns = own_first
             .map(RateTerm::Turn)
             .into_iter()

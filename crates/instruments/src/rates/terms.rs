@@ -1,6 +1,7 @@
 //! Terms of the law of a gyro's output in rates, as columns of a linear regression.
 
 use gyrocal::generated::catalogue::RATES;
+use gyrocal_record::AXES;
 use gyrocal_statistics::{PLAY_OF_HYSTERESIS, followed_with_play, local_slopes};
 use nalgebra::DVector;
 
@@ -24,8 +25,6 @@ pub(super) enum RateTerm {
     /// Change at a time \[s\] of a log.
     Step { log: usize, time_s: f64 },
 }
-
-const AXES: [&str; 3] = ["x", "y", "z"];
 
 impl RateTerm {
     /// Public name.

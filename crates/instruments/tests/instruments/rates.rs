@@ -2,6 +2,7 @@
 
 use gyrocal_instruments::rates::{GyroRates, RateReport, RateSettings, evaluate_rates};
 use gyrocal_instruments::{Description, Log, Unfit};
+use gyrocal_record::AXES;
 use gyrocal_statistics::deviates::Normals;
 use nalgebra::{Matrix3, Vector3};
 
@@ -116,11 +117,11 @@ fn turntable_rates_tell_scale_misalignment_and_sensitivity_to_force() {
         .collect();
     let report = evaluated(&logs, "[table]\ncolumn = \"t\"\nunit = \"deg/s\"\n");
     for (gyro, law) in report.gyros.iter().enumerate() {
-        let own = ["x", "y", "z"][gyro];
+        let own = AXES[gyro];
         assert!(law.undetermined.is_empty(), "{:?}", law.undetermined);
         near(law, &format!("gyro_{own}.bias"), bias[gyro]);
         for axis in 0..3 {
-            let other = ["x", "y", "z"][axis];
+            let other = AXES[axis];
             near(
                 law,
                 &format!("gyro_{own}.g_{other}"),

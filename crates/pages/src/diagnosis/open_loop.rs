@@ -2,14 +2,14 @@
 
 use gyrocal_calibration::FittedPlatform;
 use gyrocal_diagnosis::OpenLoopSimulation;
-use gyrocal_record::{Bench, Record};
+use gyrocal_record::{AXES, Bench, Record};
 use gyrocal_report::page::{Chart, Item, Panel, Section, TimeAxis};
 use gyrocal_statistics::{NORMAL_97_5, rms_of_present};
 
 use super::section;
 use crate::error::PageError;
 use crate::panels;
-use crate::words::{AXES, listed, micro_g};
+use crate::words::{listed, micro_g};
 
 /// The fits of a record whose simulations are shown.
 pub(crate) struct Simulated<'a, 'b> {

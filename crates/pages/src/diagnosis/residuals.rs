@@ -4,12 +4,12 @@ use gyrocal_diagnosis::result::{ResidualTest, Residuals};
 use gyrocal_diagnosis::{
     ChannelCorrelation, ChannelSpectrum, Diagnosis, DiagnosisResult, ModelVersion,
 };
+use gyrocal_record::AXES;
 use gyrocal_report::page::{Cell, Chart, Column, Item, Level, Mark, Panel, Section, Table, Tint};
 use gyrocal_statistics::format::{self, p_cell};
 
 use super::section as titled;
 use crate::panels::{self, line};
-use crate::words::AXES;
 
 /// Lags of the autocorrelation.
 const LAGS: usize = 40;

@@ -33,7 +33,7 @@ impl Broken {
             let values = self.record.accel_g.iter().map(|row| row[axis].abs());
             values.fold(0.0, f64::max)
         };
-        let mut axes = [0, 1, 2].map(|axis| (axis, reach(axis)));
+        let mut axes: [_; 3] = core::array::from_fn(|axis| (axis, reach(axis)));
         axes.sort_by(|a, b| b.1.total_cmp(&a.1));
         axes[0]
     }
@@ -44,7 +44,7 @@ impl Broken {
             let values = || self.record.accel_g.iter().map(move |row| row[axis]);
             values().fold(f64::MIN, f64::max) - values().fold(f64::MAX, f64::min)
         };
-        let mut axes = [0, 1, 2].map(|axis| (axis, range(axis)));
+        let mut axes: [_; 3] = core::array::from_fn(|axis| (axis, range(axis)));
         axes.sort_by(|a, b| b.1.total_cmp(&a.1));
         axes[0].0
     }
@@ -92,13 +92,13 @@ pub(super) fn zero_block(broken: &mut Broken) {
 
 pub(super) fn scale(broken: &mut Broken, factors: [f64; 3]) {
     for row in &mut broken.record.accel_g {
-        *row = [0, 1, 2].map(|axis| factors[axis] * row[axis]);
+        *row = core::array::from_fn(|axis| factors[axis] * row[axis]);
     }
 }
 
 pub(super) fn remove_gravity(broken: &mut Broken) {
     for row in &mut broken.record.accel_g {
-        *row = [0, 1, 2].map(|_| 1e-5 * broken.random.normal());
+        *row = core::array::from_fn(|_| 1e-5 * broken.random.normal());
     }
 }
 
@@ -152,7 +152,7 @@ pub(super) fn copy(broken: &mut Broken, noise_g: f64) {
     let lag = broken.place(block.len().min(200), 590);
     for at in block {
         let earlier = broken.record.accel_g[at - lag];
-        let noisy = [0, 1, 2].map(|axis| earlier[axis] + noise_g * broken.random.normal());
+        let noisy = core::array::from_fn(|axis| earlier[axis] + noise_g * broken.random.normal());
         broken.record.accel_g[at] = if noise_g > 0.0 { noisy } else { earlier };
     }
 }
@@ -187,7 +187,7 @@ pub(super) fn jump(broken: &mut Broken) {
     let from = broken.place(600, broken.rows() - 600);
     let angle_rad = (5.0 + 55.0 * broken.random.uniform()).to_radians();
     let up = broken.record.accel_g[from];
-    let any = [0, 1, 2].map(|_| broken.random.normal());
+    let any: [f64; 3] = core::array::from_fn(|_| broken.random.normal());
     let across = [
         any[1] * up[2] - any[2] * up[1],
         any[2] * up[0] - any[0] * up[2],
@@ -219,7 +219,7 @@ pub(super) fn jump_clock(broken: &mut Broken) {
 pub(super) fn stand_still(broken: &mut Broken) {
     let up = broken.record.accel_g[0];
     for row in &mut broken.record.accel_g {
-        *row = [0, 1, 2].map(|axis| up[axis] + 1e-5 * broken.random.normal());
+        *row = core::array::from_fn(|axis| up[axis] + 1e-5 * broken.random.normal());
     }
 }
 

@@ -1,6 +1,6 @@
 //! Sound records of all sorts, which no check of a set-up may refuse.
 
-use gyrocal_record::Prior;
+use gyrocal_record::{AXES, Prior};
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{Coefficients, Hidden, Population, Scenario, Simulation, simulate};
 
@@ -33,7 +33,7 @@ pub fn varied_scenario(seed: u64) -> Scenario {
         gg_sigma_deg_per_h_per_g2: [prior; 3],
         ..Prior::default()
     };
-    let mut three = |sigma: f64| [0, 1, 2].map(|_| sigma * random.normal().clamp(-2.5, 2.5));
+    let mut three = |sigma: f64| core::array::from_fn(|_| sigma * random.normal().clamp(-2.5, 2.5));
     scenario.coefficients = Coefficients {
         bias_deg_per_h: three(prior.max(0.3)),
         g_deg_per_h_per_g: three(prior),
@@ -41,7 +41,7 @@ pub fn varied_scenario(seed: u64) -> Scenario {
     };
     if random.uniform() < 0.3 {
         let lsb_g = scenario.accel_noise_g * random.log_uniform([1.0, 30.0]);
-        for axis in ["x", "y", "z"] {
+        for axis in AXES {
             let id = format!("accel_{axis}.quantisation");
             scenario
                 .hidden
@@ -68,8 +68,8 @@ pub fn varied_record(seed: u64, scenario: &Scenario) -> Simulation {
 /// Large effects of all sorts, about a hundred of their own sigmas in three days of minutes.
 pub fn large_effects(scenario: &Scenario, random: &mut Draw) -> Vec<Hidden> {
     let onset_s = scenario.duration_s * (0.2 + 0.6 * random.uniform());
-    let gyro = |name: &str| format!("gyro_{}.{name}", ["x", "y", "z"][(onset_s as usize) % 3]);
-    let accel = |name: &str| format!("accel_{}.{name}", ["x", "y", "z"][(onset_s as usize) % 3]);
+    let gyro = |name: &str| format!("gyro_{}.{name}", AXES[(onset_s as usize) % 3]);
+    let accel = |name: &str| format!("accel_{}.{name}", AXES[(onset_s as usize) % 3]);
     let size = random.sign() * random.log_uniform([0.1, 1.0]);
     let effects = [
         (

@@ -21,7 +21,7 @@ fn noise(simulation: &Simulation) -> Vec<[f64; 3]> {
         .zip(attitudes)
         .map(|(sample, platform_c_enu)| {
             let ideal = platform_c_enu.resolve([0.0, 0.0, 1.0]);
-            [0, 1, 2].map(|axis| (sample[axis] - ideal[axis]) / 1e-5)
+            core::array::from_fn(|axis| (sample[axis] - ideal[axis]) / 1e-5)
         })
         .collect()
 }
@@ -89,7 +89,7 @@ fn coloured_noise_has_its_correlation_and_the_same_variance() {
     for lag in 1..=2_u8 {
         let products = noise.iter().zip(&noise[usize::from(lag)..]);
         let sum: f64 = products
-            .flat_map(|(a, b)| [0, 1, 2].map(|axis| a[axis] * b[axis]))
+            .flat_map(|(a, b)| (0..3).map(move |axis| a[axis] * b[axis]))
             .sum();
         let measured = sum / power / 12_960.0;
         // One sigma is 0.0088.

@@ -5,6 +5,7 @@ use gyrocal_diagnosis::{
     ChannelCorrelation, ChannelSpectrum, DiagnosisError, ModelVersion, OpenLoopSimulation,
     magnitude_channel,
 };
+use gyrocal_record::AXES;
 use gyrocal_report::page::Tint;
 use gyrocal_report::{
     Bin, Correlation, CorrelationChannel, CovariatePanel, MarkedFrequency, OpenLoop,
@@ -14,8 +15,6 @@ use gyrocal_report::{
 use gyrocal_statistics::BinnedMeans;
 
 use super::{DiagnosisRun, causes, subtitle};
-
-const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// Bins of a covariate.
 const BINS: usize = 24;

@@ -10,6 +10,7 @@ use gyrocal_evaluation::{
     sets_without_walks, testable_effects,
 };
 use gyrocal_hypothesis::{FittedModel, HypothesisSet, ModelExtension};
+use gyrocal_record::AXES;
 use gyrocal_statistics::NORMAL_97_5;
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{Hidden, Scenario, Simulation, simulate};
@@ -69,7 +70,7 @@ pub(in crate::truth) fn plain(seed: u64) -> Result<(Scenario, NoiseModel), Evalu
     };
     let mut noise = NoiseModel::default();
     if random.uniform() < 0.5 {
-        for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+        for (axis, name) in AXES.into_iter().enumerate() {
             noise.gyro_ratio[axis] = random.log_uniform(MISDECLARED);
             noise.accel_ratio[axis] = random.log_uniform(MISDECLARED);
             for (id, ratio) in [

@@ -1,6 +1,6 @@
 //! Hostile records: what instruments, loggers and users do that no model explains.
 
-use gyrocal_record::{Bench, Record};
+use gyrocal_record::{AXES, Bench, Record};
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{
     Coefficients, Hidden, InitialAttitude, Scenario, Simulation, Term, simulate, simulate_with,
@@ -25,7 +25,7 @@ pub(super) fn sound(seed: u64, rows: usize) -> Result<Simulation, Error> {
 
 fn plain(seed: u64, rows: usize) -> Scenario {
     let mut random = Draw::new(seed, STREAM + 1);
-    let mut three = |size: f64| [0, 1, 2].map(|_| size * random.normal());
+    let mut three = |size: f64| core::array::from_fn(|_| size * random.normal());
     Scenario {
         seed,
         latitude_deg: 48.2,
@@ -99,7 +99,7 @@ const ALL: [Kind; KINDS] = [
     ("directions at random", |s, r| {
         changed(s, r, |record, _, r| {
             for row in &mut record.accel_g {
-                let drawn = [0, 1, 2].map(|_| r.normal());
+                let drawn = core::array::from_fn(|_| r.normal());
                 let norm = drawn.iter().map(|x| x * x).sum::<f64>().sqrt();
                 *row = drawn.map(|x| x / norm);
             }
@@ -188,7 +188,7 @@ const ALL: [Kind; KINDS] = [
         Ok(simulate(&s)?)
     }),
     ("friction and dead zones", |mut s, r| {
-        for gyro in ["x", "y", "z"] {
+        for gyro in AXES {
             let size = r.log_uniform([0.003, 0.3]);
             s.hidden.push(Hidden::new(
                 &format!("gyro_{gyro}.sign_x"),
@@ -275,7 +275,7 @@ fn huge(mut scenario: Scenario, random: &mut Draw, range: [f64; 2]) -> Result<Si
 }
 
 fn walks(mut scenario: Scenario, size: f64) -> Result<Simulation, Error> {
-    for gyro in ["x", "y", "z"] {
+    for gyro in AXES {
         let id = format!("gyro_{gyro}.random_walk");
         scenario.hidden.push(Hidden::new(&id, &[("size", size)])?);
     }
@@ -296,7 +296,7 @@ fn flicker(scenario: &Scenario, level: f64, random: &mut Draw) -> Result<Simulat
     const TIMES_H: [f64; 5] = [0.1, 1.0, 10.0, 100.0, 1000.0];
     let step_s = scenario.interval_s;
     let rows = (scenario.duration_s / step_s) as usize + 2;
-    let mut states = TIMES_H.map(|_| [0, 1, 2].map(|_| random.normal()));
+    let mut states: [[f64; 3]; _] = TIMES_H.map(|_| core::array::from_fn(|_| random.normal()));
     let mut series = vec![[0.0; 3]; rows];
     for drifts in &mut series {
         for (state, time_h) in states.iter_mut().zip(TIMES_H) {
