@@ -7,6 +7,7 @@ mod given;
 mod gyro_noise;
 mod later;
 mod noise_audited_fit;
+mod options;
 mod records;
 mod screening;
 mod shared_or_own;
@@ -15,9 +16,7 @@ mod untestable_rows;
 
 use std::borrow::Cow;
 
-use gyrocal_calibration::{
-    CalibrationError, FittedPlatform, GyroAxes, NoiseModel, Options, Run, work,
-};
+use gyrocal_calibration::{CalibrationError, FittedPlatform, GyroAxes, NoiseModel, Run, work};
 use gyrocal_hypothesis::{ScoreTable, SearchOptions, Searched, Selection};
 use gyrocal_record::{Bench, Record, SetupProblem};
 use gyrocal_setup::PlatformKind;
@@ -25,7 +24,7 @@ use gyrocal_statistics::allan_test;
 
 use crate::error::DiagnosisError;
 use crate::error_budget::{RESIDUAL_TESTS, shares};
-use crate::filter_test::{TestedFilter, filter_test};
+use crate::filter_test::filter_test;
 use crate::gate::Gate;
 use crate::magnitude_test::{MagnitudeTest, magnitude_test};
 use crate::noise::{AuditOptions, NoiseAudit, Outlier};
@@ -43,6 +42,7 @@ pub use given::fit_effects;
 use gyro_noise::{gyro_noise_findings, over_declared};
 pub use later::predict_later;
 use noise_audited_fit::{AuditedFit, noise_audited_fit};
+pub use options::DiagnoseOptions;
 pub use records::{
     RecordToDiagnose, RecordsDiagnosis, diagnose_records, diagnose_together, problems_of,
     records_summary,
@@ -50,34 +50,6 @@ pub use records::{
 pub use screening::{ScreenedRecord, screen_record};
 use shared_or_own::sizes_by_record;
 use untestable_rows::detect_outliers;
-
-/// Settings of a diagnosis.
-#[derive(Clone, Debug, PartialEq)]
-pub struct DiagnoseOptions {
-    /// Family-wise probability that a record of the nominal model with the declared noise shows any
-    /// finding.
-    pub false_alarm_probability: f64,
-    /// Effects to test beside those of the default search.
-    pub also: Vec<String>,
-    /// A filter to test for consistency on the record.
-    pub filter: Option<TestedFilter>,
-    /// Seed of the draws that thresholds come from.
-    pub seed: u64,
-    /// Integration of the model.
-    pub calibration: Options,
-}
-
-impl Default for DiagnoseOptions {
-    fn default() -> Self {
-        Self {
-            false_alarm_probability: 0.01,
-            also: Vec::new(),
-            filter: None,
-            seed: 0,
-            calibration: Options::default(),
-        }
-    }
-}
 
 /// Most causes beside which a record is diagnosed once more with correlated noise: such a search takes a few
 /// times the work of that of a clean record.

@@ -1,16 +1,19 @@
 //! The page of a multi-position test with many stops.
 
-use gyrocal_instruments::multi_position::{Finding, GyroReport, MultiPositionReport, PreparedTest};
+mod charts;
+
+use gyrocal_instruments::multi_position::{MultiPositionReport, PreparedTest};
 use gyrocal_record::{AXES, Manifest};
 use gyrocal_report::page::{
-    Band, Card, Cell, Chart, Column, EstimateRow, Estimates, Item, Line, LineKind, Panel, Part,
-    Section, Summary, Table, Tint, Tone, ValueWithSigma,
+    Card, Cell, Column, EstimateRow, Estimates, Item, Part, Section, Summary, Table, Tint, Tone,
+    ValueWithSigma,
 };
 use gyrocal_statistics::format;
 
 use crate::diagnosis::section;
 use crate::origin::{file_name, origin};
 use crate::words::listed;
+use charts::{contributions, residuals};
 
 /// Findings named on the first screen.
 const SHOWN: usize = 8;
@@ -164,129 +167,6 @@ fn alternatives(report: &MultiPositionReport) -> Card {
         text,
         columns: 6,
         ..Card::default()
-    }
-}
-
-fn residuals(prepared: &PreparedTest, report: &MultiPositionReport) -> Chart {
-    let found = !report.findings.is_empty();
-    let points = |label: &str, tint, values: &[f64]| Line {
-        label: label.to_owned(),
-        tint,
-        kind: LineKind::Points,
-        values: values.to_vec(),
-    };
-    let panels = report.gyros.iter().enumerate().map(|(axis, gyro)| {
-        let sigmas = prepared
-            .positions
-            .sigma_deg_per_h
-            .iter()
-            .map(|sigma| 2.0 * sigma[axis]);
-        let half: Vec<f64> = sigmas.collect();
-        let mut lines = vec![points(
-            "nominal law",
-            Tint::Nominal,
-            &gyro.nominal.residuals_deg_per_h,
-        )];
-        if found {
-            let after = &gyro.extended.residuals_deg_per_h;
-            lines.push(points("extended law", Tint::Extended, after));
-        }
-        Panel {
-            name: gyro.gyro.clone(),
-            note: format!(
-                "chi-square {:.0} → {:.1}",
-                gyro.nominal.chi_square, gyro.extended.chi_square
-            ),
-            abscissa: (1..=half.len()).map(|stop| stop as f64).collect(),
-            bands: vec![Band {
-                label: "±2 standard errors of a stop".to_owned(),
-                tint: Tint::Expected,
-                lower: half.iter().map(|half| -half).collect(),
-                upper: half,
-            }],
-            lines,
-            no_gaps: true,
-            ..Panel::default()
-        }
-    });
-    let [before, after] = report.residual_rms_deg_per_h();
-    Chart {
-        title: match found {
-            true => format!(
-                "{before:.0} deg/h rms with the nominal law, {after:.0} with the extended one"
-            ),
-            false => format!("{before:.0} deg/h rms with the nominal law"),
-        },
-        caption: "One point is one static stop.".to_owned(),
-        abscissa: "stop".to_owned(),
-        quantity: "residual".to_owned(),
-        unit: "deg/h".to_owned(),
-        panels: panels.collect(),
-        columns: 3,
-        height_px: 230,
-        ..Chart::default()
-    }
-}
-
-fn contributions(prepared: &PreparedTest, report: &MultiPositionReport) -> Chart {
-    let panels = report.findings.iter().filter_map(|finding| {
-        let gyro = report.gyros.get(finding.gyro)?;
-        Some(contribution(prepared, gyro, finding))
-    });
-    Chart {
-        title: "Each term of the extended law in the stops".to_owned(),
-        caption: "Partial residuals with ±2 standard errors of a stop about the fitted term."
-            .to_owned(),
-        abscissa: "regressor: specific force, or its product".to_owned(),
-        abscissa_unit: "g, g²".to_owned(),
-        quantity: "rate".to_owned(),
-        unit: "deg/h".to_owned(),
-        panels: panels.collect(),
-        columns: 3,
-        height_px: 190,
-        unlinked: true,
-        ..Chart::default()
-    }
-}
-
-fn contribution(prepared: &PreparedTest, gyro: &GyroReport, finding: &Finding) -> Panel {
-    let sigmas = prepared
-        .positions
-        .sigma_deg_per_h
-        .iter()
-        .map(|sigma| sigma[finding.gyro]);
-    let rows = finding
-        .regressor
-        .iter()
-        .zip(&gyro.extended.residuals_deg_per_h)
-        .zip(sigmas);
-    let mut rows: Vec<[f64; 3]> = rows
-        .map(|((at, residual), sigma)| [*at, residual + finding.estimate * at, sigma])
-        .collect();
-    rows.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    let fitted = |sign: f64| {
-        rows.iter()
-            .map(move |row| finding.estimate * row[0] + sign * 2.0 * row[2])
-    };
-    let [estimate, sigma] = format::estimate(finding.estimate, finding.sigma);
-    Panel {
-        name: finding.effect.clone(),
-        note: format!("{estimate} ± {sigma} {}", finding.unit).replace('-', "−"),
-        abscissa: rows.iter().map(|row| row[0]).collect(),
-        bands: vec![Band {
-            label: "fitted term ±2 standard errors of a stop".to_owned(),
-            tint: Tint::Extended,
-            lower: fitted(-1.0).collect(),
-            upper: fitted(1.0).collect(),
-        }],
-        lines: vec![Line {
-            label: "one static stop".to_owned(),
-            tint: Tint::Measured,
-            kind: LineKind::Points,
-            values: rows.iter().map(|row| row[1]).collect(),
-        }],
-        no_gaps: true,
-        ..Panel::default()
     }
 }
 

@@ -1,27 +1,22 @@
 //! A plant at its best fit to a record.
 
+mod model;
+
 use std::sync::Arc;
 
-use gyrocal_hypothesis::{
-    Column, Covariate, FittedModel, ModelExtension, Plant, RateNoise, RateNoiseFit, Rows, StateJump,
-};
+use gyrocal_hypothesis::{Column, FittedModel, ModelExtension, RateNoise, Rows};
 use nalgebra::DMatrix;
 
-use crate::backward;
 use crate::dynamics::{Dynamics, Linearised};
 use crate::error::PlantError;
 use crate::later_starts::eliminated;
-use crate::lines::{Line, of_parameters};
+use crate::lines::Line;
 use crate::loaded::LoadedPlant;
-use crate::noise::Restricted;
 use crate::pass::{Keep, Reduced, reduce};
 use crate::problem::Problem;
 use crate::record::PlantRecord;
 use crate::solve::{Iterate, Solution, Solver};
 use crate::starts::{self, Starts};
-
-/// Smallest range of a covariate that a dependence on it is looked for over, as a share of its size.
-const LEAST_RANGE: f64 = 1e-6;
 
 /// Standard deviation of a parameter that nothing is known of before a record, over its declared value: an
 /// estimate three times as large costs a deviance of 0.0004, and what no record determines stays finite.
@@ -290,140 +285,5 @@ impl FittedPlant {
             walk: vec![0.0; white.len()],
             white,
         }
-    }
-}
-
-impl FittedModel for FittedPlant {
-    type Error = PlantError;
-
-    fn plant(&self) -> &'static Plant {
-        self.problem.plant.tables()
-    }
-
-    fn extension(&self) -> &ModelExtension {
-        &self.extension
-    }
-
-    fn covariates(&self) -> Vec<Covariate> {
-        let description = &self.problem.plant.description;
-        let (n, u) = (description.states.len(), description.inputs.len());
-        let names = &self.problem.plant.catalogue.covariates;
-        let all = names.iter().enumerate().map(|(index, name)| {
-            let (from, place, count) = if index < n {
-                (self.points(), index, n)
-            } else {
-                (&self.problem.record.inputs[..], index - n, u)
-            };
-            let values: Vec<f64> = from.iter().skip(place).step_by(count).copied().collect();
-            let size = values
-                .iter()
-                .fold(0.0, |most: f64, value| most.max(value.abs()));
-            Covariate {
-                name,
-                least_range: LEAST_RANGE * size,
-                values,
-            }
-        });
-        all.collect()
-    }
-
-    fn values(&self) -> &[f64] {
-        let all = &self.solution.at.values;
-        &all[..all.len() - self.problem.later()]
-    }
-
-    fn covariance(&self) -> &DMatrix<f64> {
-        &self.covariance
-    }
-
-    fn prior_sigma(&self) -> Vec<f64> {
-        let mut all = self.problem.sigmas(&self.extension);
-        all.truncate(all.len() - self.problem.later());
-        all
-    }
-
-    fn cost(&self) -> f64 {
-        self.solution.cost
-    }
-
-    fn refitted(&self, extension: &ModelExtension) -> Result<Self, PlantError> {
-        self.solved(extension, self.ratios.clone(), self.start_of(extension))
-    }
-
-    fn rate_noise(&self) -> RateNoise {
-        self.as_rate_noise(&self.ratios)
-    }
-
-    fn fit_rate_noise(
-        &self,
-        _walking: &[usize],
-        absent: &[usize],
-    ) -> Result<RateNoiseFit, PlantError> {
-        let (lines, sigmas) = (self.lines(), self.problem.sigmas(&self.extension));
-        let restricted = Restricted::new(
-            &self.problem,
-            &self.solution.lin,
-            (&lines, &sigmas),
-            (&self.solution.at.values, absent),
-        )?;
-        let fit = restricted.maximise(&self.ratios)?;
-        let rates = self.plant().rates.len();
-        // Scores of different channels are compared as they are: see `RateNoiseFit::white_sigma`, whose
-        // degrees of freedom would correct those of rates alone.
-        let mut white_sigma = vec![f64::INFINITY; rates];
-        white_sigma.extend_from_slice(&fit.sigmas);
-        Ok(RateNoiseFit {
-            noise: self.as_rate_noise(&fit.ratios),
-            log_likelihood: fit.log_likelihood,
-            walk_sigma: vec![f64::INFINITY; white_sigma.len()],
-            white_sigma,
-        })
-    }
-
-    fn walk_intervals(&self) -> Result<Vec<Option<[f64; 2]>>, PlantError> {
-        Ok(Vec::new())
-    }
-
-    fn with_rate_noise(&self, noise: &RateNoise) -> Result<Self, PlantError> {
-        let rates = self.plant().rates.len();
-        let ratios = noise.white[rates..].to_vec();
-        self.solved(&self.extension, ratios, self.solution.at.clone())
-    }
-
-    fn sets_need_fits(&self) -> bool {
-        true
-    }
-
-    fn signatures_gram(&self, further: &[Column]) -> Result<DMatrix<f64>, PlantError> {
-        let all: Vec<usize> = (0..self.plant().parameters.len()).collect();
-        let problem = &self.problem;
-        let mut lines = of_parameters(
-            &problem.plant,
-            (&problem.record, &problem.rows),
-            &self.extension,
-            &all,
-        );
-        lines.extend(problem.columns(&self.extension));
-        lines.extend(self.further(further));
-        self.shared_gram(lines)
-    }
-
-    fn conditional_gram(&self, further: &[Column]) -> Result<DMatrix<f64>, PlantError> {
-        let mut lines = self.lines();
-        lines.truncate(lines.len() - self.problem.later());
-        lines.extend(self.further(further));
-        self.shared_gram(lines)
-    }
-
-    fn state_jumps(&self) -> Result<Vec<Option<StateJump>>, PlantError> {
-        let reduced = self.pass(&self.lines(), Keep::All)?;
-        let (lin, covariance) = (&self.solution.lin, &self.solution.covariance);
-        let mut jumps =
-            backward::jumps(lin, &reduced.kept, covariance).ok_or(PlantError::Singular)?;
-        // The states that a record begins with are free.
-        for start in &self.record().starts {
-            jumps[*start] = None;
-        }
-        Ok(jumps)
     }
 }

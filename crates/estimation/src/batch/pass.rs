@@ -1,12 +1,14 @@
 //! A pass over a record in progress: one row after the other, with the columns carried along.
 
+mod walks;
+
 use alloc::vec;
 use alloc::vec::Vec;
 
 use super::filter::{Conditional, cholesky, forward};
 use super::linearisation::{Linearisation, Whitened};
 use super::step::{Step, Stepper, map_columns, sandwich};
-use super::walk::{GIVEN_CHANGE, MEAN_INTEGRAL, WalkStep};
+use super::walk::WalkStep;
 use super::{Columns, Manifold, Series};
 use crate::error::EstimationError;
 
@@ -151,27 +153,6 @@ where
         })
     }
 
-    /// Place of the parameter of each walk among the active ones.
-    fn walk_places(of: &Linearisation<'a, D, S, C, M, Y>) -> Result<Vec<usize>, EstimationError> {
-        let walks = of.walks.walks;
-        let place = |parameter: usize| of.active.iter().position(|active| *active == parameter);
-        let places: Vec<usize> = walks
-            .iter()
-            .filter_map(|walk| place(walk.parameter))
-            .collect();
-        let changes = of.walks.changes.len();
-        let density = |density: f64| density > 0.0 && density.is_finite();
-        if places.len() < walks.len()
-            || !walks.iter().all(|walk| density(walk.density))
-            || !(changes == 0 || changes == walks.len() * of.points.len())
-        {
-            return Err(EstimationError::InvalidArgument {
-                expected: "walks of active parameters with a positive density and one change a row",
-            });
-        }
-        Ok(places)
-    }
-
     /// Updates with the outputs of a row; `used` gets each of them and its quantities. It is called
     /// through a pointer, so that the pass is compiled once for all callers.
     pub(super) fn observe(
@@ -280,14 +261,6 @@ where
         }
     }
 
-    /// Whether an output depends directly on a parameter that walks.
-    fn walk_is_seen(&self, output: usize) -> bool {
-        let q = self.of.model.output_parameters();
-        let direct = &self.d_parameters[output * q..(output + 1) * q];
-        let mut walks = self.of.walks.walks.iter();
-        walks.any(|walk| direct.get(walk.parameter).is_some_and(|own| *own != 0.0))
-    }
-
     /// Change of the moving states by a unit of each further column over the step just made.
     pub(super) fn drive(&mut self, row: usize) -> &[f64] {
         let further = self.of.further.count();
@@ -394,48 +367,5 @@ where
             jump: predicted_jump,
             cost: self.step_cost(row, noise, jump).ok_or(NOT_DRIVEN)?,
         })
-    }
-
-    /// Sets [`Self::walk_steps`] to those of the step just made after `row`.
-    fn set_walk_steps(&mut self, row: usize) {
-        self.walk_steps.clear();
-        let of = self.of;
-        if of.walks.walks.is_empty() {
-            return;
-        }
-        let duration_s = of.series.time_s(row + 1) - of.series.time_s(row);
-        let active = of.active.len();
-        for (index, walk) in of.walks.walks.iter().enumerate() {
-            let place = self.walk_places[index];
-            self.walk_steps.push(WalkStep {
-                effect: core::array::from_fn(|i| self.own[i * active + place]),
-                variance: walk.density * self.walk_factors[index] * duration_s,
-            });
-        }
-    }
-
-    /// The cost of the noise of a step: of the changes of walks, and of the jump given these. Takes
-    /// the changes of walks from the mean.
-    fn step_cost(
-        &mut self,
-        row: usize,
-        mut noise: [[f64; M]; M],
-        mut jump: [f64; M],
-    ) -> Option<f64> {
-        let mut cost = 0.0;
-        for index in 0..self.walk_steps.len() {
-            let walks = &self.of.walks;
-            let change = walks.change(row + 1, index) - walks.change(row, index);
-            self.filter.row_mut(M + index)[0] -= change;
-            let WalkStep { effect, variance } = self.walk_steps[index];
-            cost += change * change / variance;
-            for i in 0..M {
-                jump[i] -= MEAN_INTEGRAL * effect[i] * change;
-                for j in 0..M {
-                    noise[i][j] += GIVEN_CHANGE * variance * (effect[i] * effect[j]);
-                }
-            }
-        }
-        Some(cost + squared(&noise, &jump)?)
     }
 }
