@@ -57,13 +57,7 @@ pub(super) fn emit(
     let doc = documentation(program, function, count);
     let inline = inlining(count.total(), output::scalars(function));
     let allowances = allowances(function, expressions);
-    let arguments: Vec<TokenStream> = program
-        .inputs_of(function)
-        .map(|group| {
-            let (argument, length) = (ident(&group.name), integer(group.elements.len()));
-            quote!(#argument: &[T; #length])
-        })
-        .collect();
+    let arguments: Vec<TokenStream> = program.inputs_of(function).map(parameter).collect();
     let return_type = output::return_type(function);
     let body = plan::body(program, function, expressions, fused);
     let statements = &body.statements;
@@ -86,10 +80,7 @@ pub(super) fn emit(
     let into = items.claim(Namespace::Value, &into_name, &place)?;
     let out = &body.out;
     let assignments = output::assignments(function, out, &body.outputs);
-    let names: Vec<_> = program
-        .inputs_of(function)
-        .map(|group| ident(&group.name))
-        .collect();
+    let names = program.inputs_of(function).map(|group| ident(&group.name));
     let zeros = output::zeros(function);
     let mut doc = doc;
     doc.paragraph("# Results");
@@ -98,11 +89,8 @@ pub(super) fn emit(
          assigning them copies them through memory."
     ));
     let doc = doc.tokens();
-    let into_doc = Doc::of(&format!(
-        "[`{}`], written to `{out}`: every element is, at every call.",
-        function.name
-    ))
-    .tokens();
+    let into_doc = format!("[`{name}`], written to `{out}`: every element is, at every call.");
+    let into_doc = Doc::of(&into_doc).tokens();
     let few = function.inputs.len() == FEW_ARGUMENTS;
     let into_allowance = few.then(too_many_arguments);
     // A result of an element at least is there, so every statement has a scalar of type `T`.
@@ -154,6 +142,12 @@ fn documentation(program: &Program, function: &Function, count: Count) -> Doc {
     doc.paragraph("# Cost");
     doc.lines_of(&count.text());
     doc
+}
+
+/// Name and type of an argument.
+fn parameter(group: &Group) -> TokenStream {
+    let (argument, length) = (ident(&group.name), integer(group.elements.len()));
+    quote!(#argument: &[T; #length])
 }
 
 /// Meaning, unit, shape and order of an argument.
