@@ -3,6 +3,8 @@
 //! The committed files are compiled as they are unless the build found that the sources of
 //! the derivation were edited; then it derives them again into its own output directory.
 
+#![allow(clippy::too_many_lines, reason = "as long as their equations")]
+
 /// The platform: frames, drift law, dynamics, measurement, and their exact Jacobians.
 #[cfg(not(gyrocal_rederived))]
 #[rustfmt::skip]

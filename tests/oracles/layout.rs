@@ -22,6 +22,7 @@ fn parameters<const N: usize>(state: &State) -> [f64; N] {
     state.parameters(N).try_into().unwrap()
 }
 
+#[expect(clippy::too_many_lines, reason = "a table of functions")]
 fn sparse_outputs() -> Vec<Sparse> {
     let state = &states(Purpose::ScalarTypes, 1)[0];
     let (theta, drift) = (&state.theta, &state.drift);

@@ -66,6 +66,7 @@ fn not_a_program() {
 }
 
 #[test]
+#[expect(clippy::too_many_lines, reason = "a table of cases")]
 fn faulty_instructions() {
     let cases = [
         (

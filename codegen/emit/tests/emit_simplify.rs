@@ -101,6 +101,7 @@ const X0: &str = r#"["input",0,0,0],"#;
 const X1: &str = r#"["input",1,0,1],"#;
 
 #[test]
+#[expect(clippy::too_many_lines, reason = "a table of cases")]
 fn rules_do_what_they_say() {
     let cases = [
         // (what, instructions after x0 and x1, result)

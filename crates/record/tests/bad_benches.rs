@@ -31,6 +31,7 @@ fn the_good_one_is_good() {
 }
 
 #[test]
+#[expect(clippy::too_many_lines, reason = "a table of cases")]
 fn each_mistake_is_shown_where_it_is() {
     use InputErrorKind as Kind;
     let cases: &[(&str, &str, Kind, &str, &str, &str)] = &[

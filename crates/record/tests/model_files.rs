@@ -141,6 +141,7 @@ fn a_module_name_is_what_the_build_takes_for_one() {
 }
 
 #[test]
+#[expect(clippy::too_many_lines, reason = "a table of cases")]
 fn each_mistake_is_shown_where_it_is() {
     use InputErrorKind as Kind;
     let cases: &[(&str, &str, Kind, &str, &str)] = &[

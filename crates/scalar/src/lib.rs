@@ -32,11 +32,13 @@ extern crate std;
 macro_rules! generated {
     ($(#[$attribute:meta])* $visibility:vis mod $name:ident) => {
         #[cfg(not(rederived))]
+        #[allow(clippy::too_many_lines, reason = "as long as their equations")]
         $(#[$attribute])*
         $visibility mod $name {
             include!(concat!("generated/", stringify!($name), ".rs"));
         }
         #[cfg(rederived)]
+        #[allow(clippy::too_many_lines, reason = "as long as their equations")]
         $(#[$attribute])*
         $visibility mod $name {
             include!(concat!(env!("OUT_DIR"), "/", stringify!($name), ".rs"));

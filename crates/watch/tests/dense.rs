@@ -70,6 +70,7 @@ impl Direct {
 }
 
 #[test]
+#[expect(clippy::too_many_lines, reason = "one simulation, watched twice")]
 fn statistics_are_those_of_a_direct_computation() {
     let mut random = Random(ChaCha12Rng::seed_from_u64(20_261_122));
     let entry = |value, slope, from_onset| Entry {

@@ -11,11 +11,13 @@ mod controller;
 mod unit_filter;
 
 /// The model of `extended.model.toml`, with exact Jacobians.
+#[allow(clippy::too_many_lines, reason = "as long as their equations")]
 pub mod extended {
     include!(concat!(env!("OUT_DIR"), "/extended.rs"));
 }
 
 /// The model of `unit.model.toml`, whose gyros are fixed to a body.
+#[allow(clippy::too_many_lines, reason = "as long as their equations")]
 pub mod unit {
     include!(concat!(env!("OUT_DIR"), "/unit.rs"));
 }

@@ -79,6 +79,7 @@ pub fn bump_by_x<T: Scalar>(x: T, y: T) -> T {
 ";
 
 /// Compiles the modules of programs of functions of one group, and evaluates them.
+#[expect(clippy::too_many_lines, reason = "it writes the program that it runs")]
 fn compiled(cases: &[(&Program, &[Values])]) -> Vec<Vec<Printed>> {
     let directory = Path::new(env!("CARGO_TARGET_TMPDIR")).join("operations");
     std::fs::create_dir_all(directory.join("src")).unwrap();

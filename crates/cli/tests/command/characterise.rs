@@ -14,6 +14,7 @@ fn said(folder: &Folder, more: &str) -> String {
 }
 
 #[test]
+#[expect(clippy::too_many_lines, reason = "one slow run for all")]
 fn a_killed_run_goes_on_where_it_was_and_says_the_same() {
     let line =
         "--cell cubic --runs 3 --seed 5 --method bic --results runs --json o.json --markdown o.md";

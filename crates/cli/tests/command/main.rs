@@ -1,6 +1,10 @@
 //! The command `gyrocal` as a user runs it.
 
 #![cfg(test)]
+#![expect(
+    clippy::disallowed_methods,
+    reason = "tests compute what the command prints"
+)]
 
 mod allan;
 mod bad_input;

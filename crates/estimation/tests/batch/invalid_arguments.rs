@@ -23,6 +23,7 @@ fn assert_refused<C: Columns<2, 2>>(pass: &Pass<'_, C>, expected: &str) {
 }
 
 #[test]
+#[expect(clippy::too_many_lines, reason = "a table of cases")]
 fn arguments_without_meaning_are_errors() {
     let mut chain = Chain::measured(0);
     let trajectory = chain.trajectory();

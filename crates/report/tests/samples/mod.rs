@@ -55,6 +55,7 @@ pub fn residuals(count: usize) -> Residuals {
 }
 
 /// One of each kind but one.
+#[expect(clippy::too_many_lines, reason = "a table of pictures")]
 pub fn all() -> Vec<Sample> {
     let n = 400;
     let text = str::to_owned;
