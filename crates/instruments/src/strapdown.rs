@@ -250,7 +250,7 @@ impl StaticFit {
         let earth = earth_deg_per_h(self.latitude_deg);
         let level_sigma_rad = settings.level_sigma_deg.to_radians();
         let projection = vertical::projected(log, level_sigma_rad, earth[0]);
-        let vertical_rate = with_noise(self.rotation.vertical_rate);
+        let vertical_rate = with_noise(self.rotation.vertical_rate_rad_per_s);
         ImportReport {
             samples: log.len(),
             duration_s,
@@ -259,7 +259,7 @@ impl StaticFit {
             gyro_scatter_deg_per_h: deg_per_h(gyro_scatter),
             accel_scatter_g: accel_scatter,
             norm_g: self.norm_g,
-            horizontal_rate_deg_per_h: with_noise(self.rotation.horizontal_rate),
+            horizontal_rate_deg_per_h: with_noise(self.rotation.horizontal_rate_rad_per_s),
             expected_horizontal_rate_deg_per_h: earth[0],
             vertical_rate_deg_per_h: vertical_rate,
             vertical_projection_deg_per_h: projection,
@@ -267,7 +267,7 @@ impl StaticFit {
             expected_vertical_rate_deg_per_h: earth[1],
             heading_deg: self.heading_deg,
             body_c_enu: self.rotation.platform_c_enu(),
-            accel_noise_g: self.rotation.residual_rms,
+            accel_noise_g: self.rotation.residual_rms_g,
             accel_noise_correlation: self.rotation.residual_correlation,
             gyro_noise_deg_per_h: self.gyro_noise_deg_per_h,
         }

@@ -18,7 +18,7 @@ const HOLDERS: [&str; 6] = ["effect", "effects", "enters", "id", "kind", "row"];
 
 /// What stands before a literal that is compared, and after it.
 const BEFORE: &str = "== != | contains( ends_with( find( once( prefix( starts_with( suffix(";
-const AFTER: [&str; 4] = ["=> ", "| ", "== ", "!= "];
+const AFTER: [&str; 5] = ["=> ", "| ", "= ", "== ", "!= "];
 
 /// A row for each, of all packages of the workspace.
 pub(super) fn figures(root: &Path) -> Result<[Figure; 3], Error> {
@@ -54,7 +54,9 @@ pub(super) fn figures(root: &Path) -> Result<[Figure; 3], Error> {
     let rows = [(literals, compared), (cycles, circular), (&files, long)];
     Ok(rows.map(|(name, places)| Figure {
         target: "0".to_owned(),
-        measured: [places.len().to_string(), places.join("; ")].join(" "),
+        measured: format!("{} {}", places.len(), places.join("; "))
+            .trim_end()
+            .to_owned(),
         ..Figure::within(name, [0.0, 0.0], places.len() as f64).over(1, "this tree")
     }))
 }
@@ -86,7 +88,8 @@ fn comparisons(text: &str) -> impl Iterator<Item = String> {
             let after = around[2].trim_start_matches([' ', ')']);
             let part = around[1].trim_matches(['.', '_']);
             let mut held = words(line).chain(words(matched));
-            let compared = BEFORE.split(' ').any(|of| before.ends_with(of))
+            let compared = around[0].contains("matches!(")
+                || BEFORE.split(' ').any(|of| before.ends_with(of))
                 || AFTER.iter().any(|of| after.starts_with(of));
             compared
                 && (around[1].contains('.') || held.any(|word| HOLDERS.contains(&word)))
@@ -102,10 +105,11 @@ fn comparisons(text: &str) -> impl Iterator<Item = String> {
 }
 
 fn words(text: &str) -> impl Iterator<Item = &str> {
-    text.split(|letter: char| !letter.is_alphanumeric() && letter != '_')
+    let all = text.split(|letter: char| !letter.is_alphanumeric() && letter != '_');
+    all.filter(|word| !word.is_empty())
 }
 
-/// Modules at the top of a crate that use each other, directly or through others, and what uses them.
+/// Modules at the top of a crate that use each other, directly or through others.
 fn cycle(files: &[(Vec<String>, String)]) -> Vec<&str> {
     let tops = files.iter().filter_map(|(path, _)| path.first());
     let tops: BTreeSet<&str> = tops.map(String::as_str).collect();
@@ -134,12 +138,13 @@ fn cycle(files: &[(Vec<String>, String)]) -> Vec<&str> {
             }
         }
     }
-    // What uses nothing that is left is in no cycle.
+    // What uses nothing that is left, or is used by nothing, is in no cycle.
     for _ in &tops {
         let left: BTreeSet<&str> = uses.keys().copied().collect();
-        uses.retain(|_, used| {
-            used.retain(|used| left.contains(used));
-            !used.is_empty()
+        let used: BTreeSet<&str> = uses.values().flatten().copied().collect();
+        uses.retain(|top, of| {
+            of.retain(|of| left.contains(of));
+            !of.is_empty() && used.contains(top)
         });
     }
     uses.into_keys().collect()

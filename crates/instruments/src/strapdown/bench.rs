@@ -39,7 +39,7 @@ pub(super) fn bench(
          {angles_deg:?}\ninitial_angles_sigma_deg = {sigma_deg:?}\n\n[noise]\naccel_g = {:?}\n\
          gyro_deg_per_h = {:?}\n\n[prior]\nbias_sigma_deg_per_h = {bias:?}\n\
          g_sigma_deg_per_h_per_g = {bias:?}\ngg_sigma_deg_per_h_per_g2 = {bias:?}\n",
-        positive(fit.residual_rms),
+        positive(fit.residual_rms_g),
         positive(gyro_noise_deg_per_h),
     );
     Ok(Bench::parse(&text, "bench")?)

@@ -52,7 +52,7 @@ pub(super) fn check(
 
 /// Refuses specific force that does not rotate uniformly.
 pub(super) fn refuse_motion(fit: &RotationFit) -> Result<(), InstrumentError> {
-    if fit.residual_rms <= LARGEST_RESIDUAL_G {
+    if fit.residual_rms_g <= LARGEST_RESIDUAL_G {
         return Ok(());
     }
     Err(InstrumentError::unfit(
@@ -60,7 +60,7 @@ pub(super) fn refuse_motion(fit: &RotationFit) -> Result<(), InstrumentError> {
         format!(
             "specific force that differs by {:.3} g from gravity turning uniformly in inertial \
              axes",
-            fit.residual_rms
+            fit.residual_rms_g
         ),
         format!("at most {LARGEST_RESIDUAL_G} g on a static base"),
         "use a stretch in which the unit stands still; if it did, check that the gyros' unit is \
@@ -74,7 +74,11 @@ pub(super) fn refuse_other_rates(
     [horizontal, vertical]: [f64; 2],
     latitude_deg: f64,
 ) -> Result<(), InstrumentError> {
-    let found = [fit.horizontal_rate[0], fit.vertical_rate[0]].map(deg_per_h);
+    let found = [
+        fit.horizontal_rate_rad_per_s[0],
+        fit.vertical_rate_rad_per_s[0],
+    ]
+    .map(deg_per_h);
     let earth = horizontal.hypot(vertical);
     let total = found[0].hypot(found[1]);
     if let Some(error) = other_rate(total, earth) {

@@ -16,9 +16,9 @@ pub struct PlatformRow {
     pub platform_q_body: [f64; 4],
     /// Scatter of the gyros' samples within the interval, root of the three variances' sum
     /// \[rad/s\].
-    pub gyro_scatter: f64,
+    pub gyro_scatter_rad_per_s: f64,
     /// The same of the accelerometers \[g\].
-    pub accel_scatter: f64,
+    pub accel_scatter_g: f64,
 }
 
 /// Integrates a log into rows of one averaging interval each.
@@ -71,8 +71,8 @@ pub fn integrate(log: &Log, averaging_s: f64) -> Vec<PlatformRow> {
                 time_s: 0.5 * (start_s + end_s),
                 force_g: (platform_c_start * force_g).into(),
                 platform_q_body: quaternion(platform_c_start * middles[row]),
-                gyro_scatter: scatter(&log.gyro[samples.clone()]),
-                accel_scatter: scatter(&log.accel[samples]),
+                gyro_scatter_rad_per_s: scatter(&log.gyro[samples.clone()]),
+                accel_scatter_g: scatter(&log.accel[samples]),
             }
         })
         .collect()

@@ -19,11 +19,11 @@ pub struct RotationFit {
     /// Its covariance \[rad²/s²\].
     pub rate_covariance: [[f64; 3]; 3],
     /// Size of its horizontal part, and its standard deviation \[rad/s\].
-    pub horizontal_rate: [f64; 2],
+    pub horizontal_rate_rad_per_s: [f64; 2],
     /// Its vertical part, and its standard deviation \[rad/s\].
-    pub vertical_rate: [f64; 2],
+    pub vertical_rate_rad_per_s: [f64; 2],
     /// Residuals, rms a component.
-    pub residual_rms: f64,
+    pub residual_rms_g: f64,
     /// Correlation of residuals of successive points.
     pub residual_correlation: f64,
 }
@@ -61,7 +61,7 @@ pub fn fit_rotation(points: &[(f64, [f64; 3])], first_guess: [f64; 3]) -> Rotati
     let correlation = correlation(&minimum.residuals);
     // A first-order process of correlation r has (1 + r) / (1 - r) of the white variance in means.
     let inflation = ((1.0 + correlation) / (1.0 - correlation)).clamp(1.0, 1e3);
-    let residual_rms = variance.sqrt();
+    let residual_rms_g = variance.sqrt();
     let cofactors = minimum
         .cofactors
         .unwrap_or_else(|| DMatrix::from_diagonal(&DVector::from_element(UNKNOWNS, f64::NAN)));
@@ -73,9 +73,9 @@ pub fn fit_rotation(points: &[(f64, [f64; 3])], first_guess: [f64; 3]) -> Rotati
     RotationFit {
         up: up.into(),
         rate: rate.into(),
-        horizontal_rate: [across.norm(), sigma(across.normalize())],
-        vertical_rate: [vertical, sigma(up)],
-        residual_rms,
+        horizontal_rate_rad_per_s: [across.norm(), sigma(across.normalize())],
+        vertical_rate_rad_per_s: [vertical, sigma(up)],
+        residual_rms_g,
         residual_correlation: correlation,
         rate_covariance: core::array::from_fn(|row| {
             core::array::from_fn(|column| rate_covariance[(row, column)])

@@ -8,7 +8,9 @@ use super::PlatformRow;
 pub(super) fn quiet(rows: &[PlatformRow], factor: f64) -> Vec<bool> {
     let [gyro, accel] = median_scatter(rows);
     rows.iter()
-        .map(|row| row.gyro_scatter <= factor * gyro && row.accel_scatter <= factor * accel)
+        .map(|row| {
+            row.gyro_scatter_rad_per_s <= factor * gyro && row.accel_scatter_g <= factor * accel
+        })
         .collect()
 }
 
@@ -19,8 +21,8 @@ pub(super) fn median_scatter(rows: &[PlatformRow]) -> [f64; 2] {
         upper_median(&mut values).unwrap_or(0.0)
     };
     [
-        median(|row| row.gyro_scatter),
-        median(|row| row.accel_scatter),
+        median(|row| row.gyro_scatter_rad_per_s),
+        median(|row| row.accel_scatter_g),
     ]
 }
 
