@@ -5,7 +5,7 @@ use gyrocal_evaluation::{Statistic, Target};
 use gyrocal_statistics::{Judgement, Proportion, standard_error};
 use gyrocal_testkit::workspace;
 
-use crate::harness::pages;
+use crate::page::commit;
 
 /// One figure: target and measurement.
 #[derive(Clone, Debug, Default)]
@@ -159,7 +159,7 @@ pub(crate) fn coverage(covered: Proportion, band: [f64; 2]) -> Judgement {
 
 /// The figures as a table, with the commit that they are measured at, and the reasons of targets where there are any.
 pub(crate) fn table_of(figures: &[Figure]) -> String {
-    let commit = pages::commit(&workspace());
+    let commit = commit(&workspace());
     let with_reasons = figures.iter().any(|figure| !figure.reason.is_empty());
     let mut table = Table::new();
     let mut header = vec![

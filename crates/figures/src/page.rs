@@ -1,6 +1,7 @@
 //! Pages of the documentation: templates filled with measurements and compared with committed pages.
 
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use crate::error::Error;
 use crate::values::Values;
@@ -150,6 +151,26 @@ fn number(text: &str) -> Option<(usize, f64, f64)> {
     }
     let value = text[..end].parse().ok()?;
     Some((end, value, 10_f64.powi(power - places as i32)))
+}
+
+/// The commit of a workspace, as far as `git` tells it; `-dirty` if files differ from it but for the pages of
+/// figures, which one part after the other writes.
+pub(crate) fn commit(root: &Path) -> String {
+    let git = |arguments: &[&str]| {
+        let mut command = Command::new("git");
+        let output = command.arg("-C").arg(root).args(arguments).output().ok()?;
+        let text = String::from_utf8_lossy(&output.stdout).trim().to_owned();
+        output.status.success().then_some(text)
+    };
+    let Some(commit) = git(&["describe", "--always", "--exclude=*"]) else {
+        return "unknown".to_owned();
+    };
+    let tracked = ["status", "--porcelain", "--untracked-files=no"];
+    let but_pages = ["--", ":/", ":(top,exclude)docs/figures"];
+    match git(&[tracked.as_slice(), &but_pages].concat()) {
+        Some(changes) if changes.is_empty() => commit,
+        _ => format!("{commit}-dirty"),
+    }
 }
 
 #[cfg(test)]

@@ -3,7 +3,9 @@
 use crate::error::Error;
 use crate::figure::Figure;
 use crate::harness::Context;
-use crate::harness::sources::Sources;
+use crate::harness::sources::{
+    CALIBRATION, COMMAND, DIAGNOSIS, FILTER, INSTRUMENTS, PLANTS, Sources, of,
+};
 use crate::harness::topic::{Part, Topic};
 use crate::truth::Extent;
 use crate::{
@@ -11,22 +13,6 @@ use crate::{
     generator, house, kernel, logs, main_job, measured, naming, paper, plant_peers, report, truth,
     uncertainty, watch,
 };
-
-/// Packages of the platform's filter, of its calibration and diagnosis, of plants, and of all commands, each with
-/// all that it depends on.
-pub(crate) const FILTER: &[&str] = &["", "crates/testkit"];
-pub(crate) const CALIBRATION: &[&str] =
-    &["crates/calibration", "crates/truth", "crates/evaluation"];
-pub(crate) const DIAGNOSIS: &[&str] = &[
-    "crates/diagnosis",
-    "crates/design",
-    "crates/truth",
-    "crates/evaluation",
-];
-pub(crate) const INSTRUMENTS: &[&str] =
-    &["crates/instruments", "crates/diagnosis", "crates/testkit"];
-pub(crate) const PLANTS: &[&str] = &["crates/plant", "codegen/plant", "crates/evaluation"];
-pub(crate) const COMMAND: &[&str] = &["crates/cli"];
 
 /// All topics.
 pub(crate) const TOPICS: [Topic; 8] = [
@@ -320,13 +306,6 @@ pub(crate) const TOPICS: [Topic; 8] = [
         ],
     },
 ];
-
-pub(crate) const fn of(
-    packages: &'static [&'static str],
-    files: &'static [&'static str],
-) -> Sources {
-    Sources { packages, files }
-}
 
 const fn part(
     name: &'static str,

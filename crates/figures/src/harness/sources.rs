@@ -18,6 +18,22 @@ const DIGITS: usize = 12;
 /// Parts of a package that its dependants do not compile.
 const OWN: [&str; 3] = ["tests", "benches", "examples"];
 
+/// Packages of the platform's filter, of its calibration and diagnosis, of plants, and of all commands, each with
+/// all that it depends on.
+pub(crate) const FILTER: &[&str] = &["", "crates/testkit"];
+pub(crate) const CALIBRATION: &[&str] =
+    &["crates/calibration", "crates/truth", "crates/evaluation"];
+pub(crate) const DIAGNOSIS: &[&str] = &[
+    "crates/diagnosis",
+    "crates/design",
+    "crates/truth",
+    "crates/evaluation",
+];
+pub(crate) const INSTRUMENTS: &[&str] =
+    &["crates/instruments", "crates/diagnosis", "crates/testkit"];
+pub(crate) const PLANTS: &[&str] = &["crates/plant", "codegen/plant", "crates/evaluation"];
+pub(crate) const COMMAND: &[&str] = &["crates/cli"];
+
 /// What a result depends on, from the root of the workspace.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sources {
@@ -25,6 +41,14 @@ pub(crate) struct Sources {
     pub(crate) packages: &'static [&'static str],
     /// Further files and folders.
     pub(crate) files: &'static [&'static str],
+}
+
+/// Packages and files.
+pub(crate) const fn of(
+    packages: &'static [&'static str],
+    files: &'static [&'static str],
+) -> Sources {
+    Sources { packages, files }
 }
 
 impl Sources {

@@ -13,8 +13,8 @@ use serde::{Deserialize, Serialize};
 use super::interval_s;
 use crate::error::Error;
 use crate::figure::Figure;
+use crate::harness::sources::{DIAGNOSIS, of};
 use crate::harness::{COVERAGE, COVERAGE_REASON, Context, Population, Row};
-use crate::topics::{DIAGNOSIS, of};
 
 /// Purposes of the streams of draws: of the noise levels, and of the series.
 const LEVELS: u64 = 42;

@@ -1,0 +1,197 @@
+use super::*;
+use crate::figure::table_of;
+
+fn share(name: &str, hits: u64, trials: u64) -> Figure {
+    Figure::note_share(name, Proportion { hits, trials }, "0..9")
+}
+
+fn page() -> Vec<Row> {
+    let figures = [
+        share("detected", 975, 1000),
+        share("missed", 0, 1000),
+        Figure::within("time", [0.0, 2.0], 1.0),
+    ];
+    rows(&format!(
+        "# Figures\n\n| a | b |\n|---|---|\n| 1 | 2 |\n\n{}\n",
+        table_of(&figures)
+    ))
+}
+
+fn judged(figures: &[Figure]) -> Vec<Figure> {
+    compared_with(
+        "docs/figures/x.md",
+        "cargo figures x --write",
+        &page(),
+        figures,
+    )
+}
+
+#[test]
+fn shares_that_chance_explains_agree() {
+    let time = Figure::within("time", [0.0, 2.0], 1.9);
+    let result = judged(&[share("detected", 6, 8), share("missed", 1, 8), time]);
+    assert_eq!(result.len(), 1, "{result:?}");
+    assert_eq!(
+        (result[0].measured.as_str(), result[0].holds),
+        ("2 of 2", Some(true))
+    );
+}
+
+#[test]
+fn percents_are_shares_where_the_name_says_so() {
+    let of = |name: &str, measured: &str| {
+        let (name, measured) = (name.to_owned(), measured.to_owned());
+        Row {
+            name,
+            measured,
+            runs: 200,
+        }
+        .share()
+        .map(|share| share.hits)
+    };
+    assert_eq!(
+        of(
+            "gyro_x.bias: % of 95 % intervals",
+            "95.500 (95 %: 91 to 98)"
+        ),
+        Some(191)
+    );
+    assert_eq!(of("detected", "0.955, bound 0.97"), Some(191));
+    assert_eq!(of("mean NIS", "2.996"), None);
+    assert_eq!(of("failures", "0"), None);
+}
+
+#[test]
+fn a_share_that_differs_is_told_with_its_row() {
+    let result = judged(&[share("detected", 2, 8), share("missed", 0, 8)]);
+    assert_eq!(result[0].holds, Some(false));
+    assert_eq!(
+        result[0].measured,
+        "1 of 2: `detected` is 0.975 of 1000 on the page and 0.250 of 8 here"
+    );
+}
+
+#[test]
+fn a_row_that_the_page_lacks_is_a_note() {
+    let result = judged(&[share("detected", 8, 8), share("new", 0, 8)]);
+    assert_eq!((result[0].holds, result[1].holds), (Some(true), None));
+    assert_eq!(
+        result[1].measured,
+        "page lacks this row: `new`: measure it again with `cargo figures x --write`"
+    );
+    let none = compared("no-such-topic", &[]);
+    assert!(none[0].holds.is_none() && none[0].measured.contains("there is none"));
+}
+
+#[test]
+fn a_section_is_renewed_in_its_place() {
+    let parts = ["one", "two", "three"];
+    let body = |word: &str| format!("{word}\n\n{}\n", table_of(&[share(word, 1, 2)]));
+    let page = with_section("", "x", "three", &parts, &body("c"));
+    let page = with_section(&page, "x", "one", &parts, &body("a"));
+    let renewed = with_section(&page, "x", "three", &parts, &body("d"));
+    assert_eq!(page.replace("c", "d"), renewed.replace("c", "d"));
+    let names: Vec<String> = rows(&renewed).into_iter().map(|row| row.name).collect();
+    assert_eq!(names, ["a", "d"]);
+    assert_eq!(renewed.matches("\n## ").count(), 2);
+}
+
+/// Each committed page names its command and the commit that it was measured at, in every section, and
+/// has figures with unique names.
+#[test]
+fn committed_pages_name_their_commit_and_can_be_read() {
+    let pages = std::fs::read_dir(workspace().join("docs/figures")).expect("it is committed");
+    for page in pages {
+        let path = page.expect("a file").path();
+        if path.extension().is_none_or(|kind| kind != "md") {
+            continue;
+        }
+        let text = std::fs::read_to_string(&path).expect("a page");
+        let topic = path
+            .file_stem()
+            .and_then(|stem| stem.to_str())
+            .expect("a name");
+        let origins = text.split("Printed by `cargo figures ");
+        let commits: Vec<usize> = origins
+            .skip(1)
+            .map(|origin| {
+                let commit = origin.split_once("` of commit ").map(|(_, rest)| rest);
+                let commit = commit.unwrap_or_default().chars();
+                commit.take_while(char::is_ascii_hexdigit).count()
+            })
+            .collect();
+        let tables = text.lines().filter(|line| line.starts_with("| figure "));
+        assert!(
+            commits.len() == tables.count() && commits.iter().all(|digits| *digits >= 7),
+            "{topic}: a table names no commit"
+        );
+        let mut names: Vec<String> = rows(&text).into_iter().map(|row| row.name).collect();
+        assert!(!names.is_empty(), "{topic} has no figures");
+        names.sort();
+        let count = names.len();
+        names.dedup();
+        assert_eq!(names.len(), count, "{topic} has two figures of one name");
+    }
+}
+
+/// Pages and rows of an earlier commit, the names that some have now, and why some are gone.
+#[derive(serde::Deserialize)]
+struct Moved {
+    row: Vec<MovedRow>,
+}
+
+#[derive(serde::Deserialize)]
+struct MovedRow {
+    was: String,
+    now: Option<String>,
+    gone: Option<String>,
+}
+
+#[test]
+fn no_row_of_an_earlier_commit_is_lost() {
+    let root = workspace();
+    let text = |file: &str| std::fs::read_to_string(root.join(file)).expect("it is committed");
+    let moved: Moved = toml::from_str(&text("docs/figures/moved.toml")).expect("the list");
+    let mut names: Vec<String> = Vec::new();
+    for topic in &crate::topics::TOPICS {
+        let page = text(&format!("docs/figures/{}.md", topic.name));
+        let of_page = rows(&page).into_iter();
+        names.extend(of_page.map(|row| format!("{}: {}", topic.name, row.name)));
+    }
+    for row in &moved.row {
+        let Some(now) = &row.now else {
+            assert!(
+                row.gone.as_ref().is_some_and(|why| !why.is_empty()),
+                "{}: why?",
+                row.was
+            );
+            continue;
+        };
+        assert!(
+            row.gone.is_none() && names.contains(now),
+            "no row is called `{now}`"
+        );
+    }
+    for was in text("tests/data/figures/rows_57c517e1.txt").lines() {
+        let is_listed = moved.row.iter().any(|row| matches(&row.was, was));
+        let (_, name) = was.split_once(": ").expect("a page and a row");
+        let is_there = names.iter().any(|now| now.ends_with(&format!(": {name}")));
+        assert!(is_listed || is_there, "lost: {was}");
+    }
+}
+
+/// Whether a text is a pattern, in which a `*` stands for any text.
+fn matches(pattern: &str, text: &str) -> bool {
+    let mut parts = pattern.split('*');
+    let Some(mut rest) = parts.next().and_then(|first| text.strip_prefix(first)) else {
+        return false;
+    };
+    let parts: Vec<&str> = parts.collect();
+    for part in &parts {
+        match rest.find(part) {
+            Some(place) => rest = &rest[place + part.len()..],
+            None => return false,
+        }
+    }
+    rest.is_empty() || pattern.ends_with('*')
+}
