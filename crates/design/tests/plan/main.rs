@@ -3,21 +3,12 @@
 
 mod several;
 
-use gyrocal::EFFECTS;
-use gyrocal_calibration::{
-    FittedPlatform, NoiseModel, Options, Run, calibrate_runs, joined_record,
-};
+use gyrocal_calibration::{NoiseModel, Options, Run, calibrate_runs};
 use gyrocal_design::{
-    Aim, DesignError, Forecast, Goal, NamedCause, PlanOptions, PlanResult, Proposal, compare,
-    first_screen, fitted_to_records, plan,
+    Aim, DesignError, Goal, NamedCause, PlanOptions, PlanResult, Proposal, compare, plan,
 };
-use gyrocal_diagnosis::result::{DiagnosisResult, SizeChoice};
-use gyrocal_diagnosis::{DiagnoseOptions, Gate, RecordToDiagnose, diagnose_records};
-use gyrocal_hypothesis::RateNoise;
 use gyrocal_record::{GimbalLimits, Prior};
-use gyrocal_truth::{
-    Coefficients, Hidden, InitialAttitude, Scenario, Simulation, Temperature, simulate,
-};
+use gyrocal_truth::{Coefficients, Hidden, InitialAttitude, Scenario, Simulation, simulate};
 
 /// A day and a half of samples each two minutes.
 fn scenario(seed: u64) -> Scenario {

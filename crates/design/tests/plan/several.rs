@@ -5,7 +5,7 @@ use gyrocal_calibration::{
     FittedPlatform, NoiseModel, Options, Run, calibrate_runs, joined_record,
 };
 use gyrocal_design::{
-    Aim, Forecast, Goal, NamedCause, PlanOptions, PlanResult, fitted_to_records, plan,
+    Aim, Forecast, NamedCause, PlanOptions, PlanResult, first_screen, fitted_to_records, plan,
 };
 use gyrocal_diagnosis::result::{DiagnosisResult, SizeChoice};
 use gyrocal_diagnosis::{DiagnoseOptions, Gate, RecordToDiagnose, diagnose_records};

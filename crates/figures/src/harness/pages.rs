@@ -1,7 +1,7 @@
 //! Pages of figures, `docs/figures/TOPIC.md`: a section for each part, written by the night of figures and compared
 //! with by the small version.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use gyrocal_statistics::Proportion;
 use gyrocal_testkit::{timing, workspace};
