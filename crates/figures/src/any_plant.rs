@@ -9,8 +9,8 @@ mod second;
 use gyrocal_evaluation::Progress;
 use gyrocal_plant::answer::Found;
 use gyrocal_plant::{FittedPlant, LoadedPlant, PlantError, PlantRecord, SearchOptions, diagnose};
-use gyrocal_plant_truth::{Kind, Run, Setting, Stream, simulate, strength, with_strength};
 use gyrocal_statistics::Proportion;
+use gyrocal_truth::plant::{Kind, Run, Setting, Stream, simulate, strength, with_strength};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -82,7 +82,7 @@ fn record(plant: &LoadedPlant, setting: &Setting) -> Result<PlantRecord, PlantEr
     prepared(plant, simulate(setting, None))
 }
 
-fn prepared(plant: &LoadedPlant, run: Run) -> Result<PlantRecord, PlantError> {
+pub(crate) fn prepared(plant: &LoadedPlant, run: Run) -> Result<PlantRecord, PlantError> {
     let record = PlantRecord {
         time_s: run.time_s,
         inputs: run.inputs.concat(),

@@ -8,13 +8,13 @@ use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
 
-use gyrocal_plant::{LoadedPlant, PlantRecord, SearchOptions, diagnose};
-use gyrocal_plant_truth::{Kind, Run, Setting, Stream, simulate, strength, with_strength};
+use gyrocal_plant::{LoadedPlant, SearchOptions, diagnose};
 use gyrocal_statistics::{Proportion, median};
 use gyrocal_testkit::python_with;
+use gyrocal_truth::plant::{Kind, Setting, Stream, simulate, strength, with_strength};
 use serde::{Deserialize, Serialize};
 
-use crate::any_plant::loaded;
+use crate::any_plant::{loaded, prepared};
 use crate::error::Error;
 use crate::figure::Figure;
 use crate::kernel::instructions::output;
@@ -105,16 +105,6 @@ pub(crate) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
     Ok(judged.chain(noted).collect())
 }
 
-fn record(plant: &LoadedPlant, run: &Run) -> Result<PlantRecord, Error> {
-    let record = PlantRecord {
-        time_s: run.time_s.clone(),
-        inputs: run.inputs.concat(),
-        outputs: run.outputs.concat(),
-        ..PlantRecord::default()
-    };
-    Ok(record.prepared(plant.description(), "simulated")?)
-}
-
 /// Simulates and diagnoses a record; writes it and a later one.
 fn diagnosed(plant: &LoadedPlant, seed: u64, directory: &Path) -> Result<Ours, Error> {
     let mut setting = Setting::random(Kind::Quadrotor, seed, ROWS);
@@ -135,7 +125,7 @@ fn diagnosed(plant: &LoadedPlant, seed: u64, directory: &Path) -> Result<Ours, E
         std::fs::write(directory.join(name), run.csv(&INPUTS, &OUTPUTS))?;
     }
     let began = Instant::now();
-    let first = record(plant, &runs[0])?;
+    let first = prepared(plant, runs[0].clone())?;
     let answer = diagnose(plant, first, None, &SearchOptions::default())?.answer;
     let seconds = began.elapsed().as_secs_f64();
     let [record, later] = names;

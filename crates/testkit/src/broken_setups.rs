@@ -11,6 +11,7 @@ use gyrocal_record::{Bench, Record};
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{Population, Simulation, simulate};
 
+use Angles::{Either, Given, Left};
 pub use sound::{large_effects, varied_record, varied_scenario};
 
 /// A record, its bench description, and draws of what is spoilt.
@@ -86,251 +87,61 @@ impl Breakage {
 }
 
 /// All breakages.
+#[rustfmt::skip] // a table
 pub const BREAKAGES: &[Breakage] = &[
     // the clock
-    Breakage::new(
-        "two rows exchanged",
-        &["clock"],
-        Angles::Either,
-        rows::exchange_two,
-    ),
-    Breakage::new("times in milliseconds", &["clock"], Angles::Either, |b| {
-        rows::scale_time(b, 1e3)
-    }),
-    Breakage::new("times in minutes", &["clock"], Angles::Either, |b| {
-        rows::scale_time(b, 1.0 / 60.0)
-    }),
-    Breakage::new("times in hours", &["clock"], Angles::Either, |b| {
-        rows::scale_time(b, 1.0 / 3600.0)
-    }),
+    Breakage::new("two rows exchanged", &["clock"], Either, rows::exchange_two),
+    Breakage::new("times in milliseconds", &["clock"], Either, |b| rows::scale_time(b, 1e3)),
+    Breakage::new("times in minutes", &["clock"], Either, |b| rows::scale_time(b, 1.0 / 60.0)),
+    Breakage::new("times in hours", &["clock"], Either, |b| rows::scale_time(b, 1.0 / 3600.0)),
     // missing values
-    Breakage::new(
-        "an empty column",
-        &["missing"],
-        Angles::Either,
-        rows::empty_column,
-    ),
-    Breakage::new("0 in one column", &["missing-coded"], Angles::Either, |b| {
-        rows::code(b, 0.0, false)
-    }),
-    Breakage::new(
-        "-999 in all columns",
-        &["missing-coded"],
-        Angles::Either,
-        |b| rows::code(b, -999.0, true),
-    ),
-    Breakage::new(
-        "a block of 0 in all columns",
-        &["missing-coded"],
-        Angles::Either,
-        rows::zero_block,
-    ),
+    Breakage::new("an empty column", &["missing"], Either, rows::empty_column),
+    Breakage::new("0 in one column", &["missing-coded"], Either, |b| rows::code(b, 0.0, false)),
+    Breakage::new("-999 in all columns", &["missing-coded"], Either, |b| rows::code(b, -999.0, true)),
+    Breakage::new("a block of 0 in all columns", &["missing-coded"], Either, rows::zero_block),
     // the unit
-    Breakage::new("m/s^2", &["unit"], Angles::Either, |b| {
-        rows::scale(b, [9.81; 3])
-    }),
-    Breakage::new("mg", &["unit"], Angles::Either, |b| {
-        rows::scale(b, [1e3; 3])
-    }),
-    Breakage::new(
-        "gravity removed",
-        &["unit"],
-        Angles::Either,
-        rows::remove_gravity,
-    ),
+    Breakage::new("m/s^2", &["unit"], Either, |b| rows::scale(b, [9.81; 3])),
+    Breakage::new("mg", &["unit"], Either, |b| rows::scale(b, [1e3; 3])),
+    Breakage::new("gravity removed", &["unit"], Either, rows::remove_gravity),
     // values that repeat
-    Breakage::new(
-        "stuck for hours",
-        &["stuck", "missing-coded"],
-        Angles::Either,
-        rows::stick_for_hours,
-    ),
-    Breakage::new(
-        "stuck from the middle on",
-        &["stuck", "missing-coded"],
-        Angles::Either,
-        rows::stick_to_the_end,
-    ),
-    Breakage::new("clipped", &["clipped"], Angles::Either, |b| {
-        rows::clip(b, 0.0)
-    }),
-    Breakage::new(
-        "clipped before the noise",
-        &["clipped"],
-        Angles::Either,
-        |b| rows::clip(b, 1e-5),
-    ),
-    Breakage::new(
-        "the logger hangs",
-        &["repeated"],
-        Angles::Either,
-        rows::hang,
-    ),
-    Breakage::new("each row twice", &["repeated"], Angles::Either, rows::hold),
-    Breakage::new(
-        "a block over later rows",
-        &["duplicated"],
-        Angles::Either,
-        |b| rows::copy(b, 0.0),
-    ),
-    Breakage::new(
-        "a block with new noise",
-        &["duplicated"],
-        Angles::Either,
-        |b| rows::copy(b, 1e-5),
-    ),
-    Breakage::new(
-        "a block inserted, times renumbered",
-        &["duplicated"],
-        Angles::Either,
-        rows::insert_copy,
-    ),
+    Breakage::new("stuck for hours", &["stuck", "missing-coded"], Either, rows::stick_for_hours),
+    Breakage::new("stuck from the middle on", &["stuck", "missing-coded"], Either, rows::stick_to_the_end),
+    Breakage::new("clipped", &["clipped"], Either, |b| rows::clip(b, 0.0)),
+    Breakage::new("clipped before the noise", &["clipped"], Either, |b| rows::clip(b, 1e-5)),
+    Breakage::new("the logger hangs", &["repeated"], Either, rows::hang),
+    Breakage::new("each row twice", &["repeated"], Either, rows::hold),
+    Breakage::new("a block over later rows", &["duplicated"], Either, |b| rows::copy(b, 0.0)),
+    Breakage::new("a block with new noise", &["duplicated"], Either, |b| rows::copy(b, 1e-5)),
+    Breakage::new("a block inserted, times renumbered", &["duplicated"], Either, rows::insert_copy),
     // gains
-    Breakage::new(
-        "the gain of one axis",
-        &["scale"],
-        Angles::Either,
-        rows::gain,
-    ),
-    Breakage::new(
-        "one axis in m/s^2",
-        &["scale"],
-        Angles::Either,
-        rows::one_axis_in_other_unit,
-    ),
+    Breakage::new("the gain of one axis", &["scale"], Either, rows::gain),
+    Breakage::new("one axis in m/s^2", &["scale"], Either, rows::one_axis_in_other_unit),
     // leaps
-    Breakage::new(
-        "a jump of the attitude",
-        &["jump"],
-        Angles::Either,
-        rows::jump,
-    ),
-    Breakage::new(
-        "rows lost without a trace",
-        &["jump"],
-        Angles::Either,
-        rows::lose,
-    ),
-    Breakage::new(
-        "a jump of the clock",
-        &["jump", "clock"],
-        Angles::Either,
-        rows::jump_clock,
-    ),
-    Breakage::new(
-        "a platform at rest on the Earth",
-        &["still"],
-        Angles::Either,
-        rows::stand_still,
-    ),
+    Breakage::new("a jump of the attitude", &["jump"], Either, rows::jump),
+    Breakage::new("rows lost without a trace", &["jump"], Either, rows::lose),
+    Breakage::new("a jump of the clock", &["jump", "clock"], Either, rows::jump_clock),
+    Breakage::new("a platform at rest on the Earth", &["still"], Either, rows::stand_still),
     // axes and latitude without angles
-    Breakage::new(
-        "latitude negated, no angles",
-        &["handedness"],
-        Angles::Left,
-        description::negate_latitude,
-    ),
-    Breakage::new(
-        "two axes exchanged, no angles",
-        &["handedness"],
-        Angles::Left,
-        rows::exchange_axes,
-    ),
-    Breakage::new(
-        "one axis negated, no angles",
-        &["handedness"],
-        Angles::Left,
-        rows::negate_axis,
-    ),
-    Breakage::new(
-        "all axes negated, no angles",
-        &["handedness"],
-        Angles::Left,
-        |b| rows::scale(b, [-1.0; 3]),
-    ),
-    Breakage::new(
-        "latitude in radians, no angles",
-        &["latitude"],
-        Angles::Left,
-        description::latitude_in_radians,
-    ),
+    Breakage::new("latitude negated, no angles", &["handedness"], Left, description::negate_latitude),
+    Breakage::new("two axes exchanged, no angles", &["handedness"], Left, rows::exchange_axes),
+    Breakage::new("one axis negated, no angles", &["handedness"], Left, rows::negate_axis),
+    Breakage::new("all axes negated, no angles", &["handedness"], Left, |b| rows::scale(b, [-1.0; 3])),
+    Breakage::new("latitude in radians, no angles", &["latitude"], Left, description::latitude_in_radians),
     // axes, latitude and attitude with angles
-    Breakage::new(
-        "latitude negated",
-        &["latitude"],
-        Angles::Given,
-        description::negate_latitude,
-    ),
-    Breakage::new(
-        "latitude in radians",
-        &["latitude"],
-        Angles::Given,
-        description::latitude_in_radians,
-    ),
-    Breakage::new(
-        "two axes exchanged",
-        &["axes"],
-        Angles::Given,
-        rows::exchange_axes,
-    ),
-    Breakage::new(
-        "one axis negated",
-        &["axes"],
-        Angles::Given,
-        rows::negate_axis,
-    ),
-    Breakage::new("all axes negated", &["axes"], Angles::Given, |b| {
-        rows::scale(b, [-1.0; 3])
-    }),
-    Breakage::new(
-        "all axes exchanged",
-        &["axes"],
-        Angles::Given,
-        rows::turn_axes,
-    ),
-    Breakage::new(
-        "angles in radians",
-        &["angles"],
-        Angles::Given,
-        description::angles_in_radians,
-    ),
-    Breakage::new(
-        "angles negated",
-        &["angles"],
-        Angles::Given,
-        description::negate_angles,
-    ),
-    Breakage::new(
-        "angles against north, east, down",
-        &["angles"],
-        Angles::Given,
-        description::angles_against_ned,
-    ),
-    Breakage::new(
-        "angles left at zero",
-        &["attitude"],
-        Angles::Given,
-        description::zero_angles,
-    ),
-    Breakage::new(
-        "the azimuth of another day",
-        &["attitude", "angles"],
-        Angles::Given,
-        description::turn_azimuth,
-    ),
+    Breakage::new("latitude negated", &["latitude"], Given, description::negate_latitude),
+    Breakage::new("latitude in radians", &["latitude"], Given, description::latitude_in_radians),
+    Breakage::new("two axes exchanged", &["axes"], Given, rows::exchange_axes),
+    Breakage::new("one axis negated", &["axes"], Given, rows::negate_axis),
+    Breakage::new("all axes negated", &["axes"], Given, |b| rows::scale(b, [-1.0; 3])),
+    Breakage::new("all axes exchanged", &["axes"], Given, rows::turn_axes),
+    Breakage::new("angles in radians", &["angles"], Given, description::angles_in_radians),
+    Breakage::new("angles negated", &["angles"], Given, description::negate_angles),
+    Breakage::new("angles against north, east, down", &["angles"], Given, description::angles_against_ned),
+    Breakage::new("angles left at zero", &["attitude"], Given, description::zero_angles),
+    Breakage::new("the azimuth of another day", &["attitude", "angles"], Given, description::turn_azimuth),
     // gravity
-    Breakage::new(
-        "standard g at another site",
-        &["gravity"],
-        Angles::Either,
-        rows::standard_gravity,
-    ),
-    Breakage::new(
-        "a common scale",
-        &["gravity", "scale"],
-        Angles::Either,
-        rows::common_scale,
-    ),
+    Breakage::new("standard g at another site", &["gravity"], Either, rows::standard_gravity),
+    Breakage::new("a common scale", &["gravity", "scale"], Either, rows::common_scale),
 ];
 
 /// A sound record: any attitude, latitudes of 15 to 75 degrees north or south, two to four days

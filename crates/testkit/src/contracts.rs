@@ -8,95 +8,33 @@ use serde_json::Value;
 
 use crate::workspace;
 
-/// A command with `--json`.
-struct Contract {
-    /// Its words.
-    command: &'static str,
-    /// File of its schema, without the ending.
-    schema: &'static str,
-    /// Its other arguments. `@` begins a path in the repository, `%` one in the folder of the run.
-    arguments: &'static str,
-}
+/// Arguments of several commands. `@` begins a path in the repository, `%` one in the folder of the run.
+const LOG: &str = "@tests/data/measured/ring_laser_static/imu.csv \
+                   --log-description @tests/data/measured/ring_laser_static/log.toml";
+const FAULT: &str =
+    "@examples/data/hidden_fault.csv --bench @examples/data/hidden_fault.bench.toml";
+const DAYS: &str = "@examples/data/three_days.csv --bench @examples/data/three_days.bench.toml";
 
-/// All of them, those first whose results others read.
-const CONTRACTS: [Contract; 14] = [
-    Contract {
-        command: "allan",
-        schema: "allan",
-        arguments: "@tests/data/measured/ring_laser_static/imu.csv \
-                    --log-description @tests/data/measured/ring_laser_static/log.toml",
-    },
-    Contract {
-        command: "calibrate",
-        schema: "calibration",
-        arguments: "@examples/data/three_days.csv --bench @examples/data/three_days.bench.toml",
-    },
-    Contract {
-        command: "characterise",
-        schema: "characteristics",
-        arguments: "--cell d8 --runs 1",
-    },
-    Contract {
-        command: "diagnose",
-        schema: "diagnosis",
-        arguments: "@examples/data/hidden_fault.csv --bench @examples/data/hidden_fault.bench.toml",
-    },
-    Contract {
-        command: "extend",
-        schema: "extension",
-        arguments: "%diagnose.json --out %extended.model.toml",
-    },
-    Contract {
-        command: "import strapdown",
-        schema: "import",
-        arguments: "@tests/data/measured/ring_laser_static/imu.csv \
-                    --log-description @tests/data/measured/ring_laser_static/log.toml --out %record.csv",
-    },
-    Contract {
-        command: "monte-carlo",
-        schema: "monte-carlo",
-        arguments: "@examples/data/three_days.scenario.toml --seeds 0..2",
-    },
-    Contract {
-        command: "plan",
-        schema: "plan",
-        arguments: "@examples/data/hidden_fault.csv --bench @examples/data/hidden_fault.bench.toml \
-                    --diagnosis %diagnose.json",
-    },
-    Contract {
-        command: "plant diagnose",
-        schema: "plant-diagnosis",
-        arguments: "@examples/duffing/plant.json @examples/duffing/record.csv \
-                    --columns @examples/duffing/columns.toml --validate @examples/duffing/later.csv",
-    },
-    Contract {
-        command: "rates",
-        schema: "rates",
-        arguments: "@tests/data/measured/ring_laser_static/imu.csv \
-                    --log-description @tests/data/measured/ring_laser_static/log.toml",
-    },
-    Contract {
-        command: "report",
-        schema: "uncertainty",
-        arguments: "@examples/data/hidden_fault.csv --bench @examples/data/hidden_fault.bench.toml \
-                    --uncertainty --out %report.html",
-    },
-    Contract {
-        command: "simulate",
-        schema: "truth",
-        arguments: "@examples/data/hidden_fault.scenario.toml --out %simulated.csv",
-    },
-    Contract {
-        command: "tumble",
-        schema: "tumble",
-        arguments: "@tests/data/measured/xsens_38_positions/imu_counts.csv \
-                    --log-description @tests/data/measured/xsens_38_positions/log.toml",
-    },
-    Contract {
-        command: "watch",
-        schema: "watch",
-        arguments: "@examples/data/three_days.csv --bench @examples/data/three_days.bench.toml",
-    },
+/// Every command with `--json`: its words, the file of its schema without the ending, and its other
+/// arguments; those first whose results others read.
+#[rustfmt::skip] // a table
+const CONTRACTS: [(&str, &str, &[&str]); 14] = [
+    ("allan", "allan", &[LOG]),
+    ("calibrate", "calibration", &[DAYS]),
+    ("characterise", "characteristics", &["--cell d8 --runs 1"]),
+    ("diagnose", "diagnosis", &[FAULT]),
+    ("extend", "extension", &["%diagnose.json --out %extended.model.toml"]),
+    ("import strapdown", "import", &[LOG, "--out %record.csv"]),
+    ("monte-carlo", "monte-carlo", &["@examples/data/three_days.scenario.toml --seeds 0..2"]),
+    ("plan", "plan", &[FAULT, "--diagnosis %diagnose.json"]),
+    ("plant diagnose", "plant-diagnosis", &["@examples/duffing/plant.json @examples/duffing/record.csv",
+        "--columns @examples/duffing/columns.toml --validate @examples/duffing/later.csv"]),
+    ("rates", "rates", &[LOG]),
+    ("report", "uncertainty", &[FAULT, "--uncertainty --out %report.html"]),
+    ("simulate", "truth", &["@examples/data/hidden_fault.scenario.toml --out %simulated.csv"]),
+    ("tumble", "tumble", &["@tests/data/measured/xsens_38_positions/imu_counts.csv",
+        "--log-description @tests/data/measured/xsens_38_positions/log.toml"]),
+    ("watch", "watch", &[DAYS]),
 ];
 
 /// Result of one command held against its schema.
@@ -117,11 +55,11 @@ pub fn check_contracts(
     let folder = tempfile::tempdir().unwrap();
     let listed = CONTRACTS
         .iter()
-        .filter(|one| commands.iter().any(|command| command == one.command));
+        .filter(|(own, ..)| commands.iter().any(|command| command == own));
     let mut outcomes: Vec<ContractOutcome> = listed
-        .map(|one| ContractOutcome {
-            command: one.command.to_owned(),
-            fault: fault(one, folder.path(), &run),
+        .map(|(command, _, rest)| ContractOutcome {
+            command: (*command).to_owned(),
+            fault: fault(command, rest, folder.path(), &run),
         })
         .collect();
     let unlisted = commands
@@ -136,8 +74,8 @@ pub fn check_contracts(
 
 /// The schema of the result of a command, by its words, as a path in the repository.
 pub fn schema_of(command: &str) -> Option<String> {
-    let one = CONTRACTS.iter().find(|one| one.command == command)?;
-    Some(format!("docs/schema/{}.schema.json", one.schema))
+    let (_, schema, _) = CONTRACTS.iter().find(|(own, ..)| *own == command)?;
+    Some(format!("docs/schema/{schema}.schema.json"))
 }
 
 /// What of a result does not conform to a schema of the repository; empty if all does.
@@ -153,19 +91,25 @@ pub fn violations(schema: &str, result: &str) -> String {
     errors.join("\n")
 }
 
-fn fault(one: &Contract, folder: &Path, run: impl Fn(&[String]) -> Result<(), String>) -> String {
+fn fault(
+    command: &str,
+    rest: &[&str],
+    folder: &Path,
+    run: impl Fn(&[String]) -> Result<(), String>,
+) -> String {
     let argument = |word: &str| match word.split_at(1) {
         ("@", path) => workspace().join(path).display().to_string(),
         ("%", name) => folder.join(name).display().to_string(),
         _ => word.to_owned(),
     };
-    let json = folder.join(format!("{}.json", one.command.replace(' ', "-")));
-    let mut arguments: Vec<String> = one.command.split(' ').map(str::to_owned).collect();
-    arguments.extend(one.arguments.split_whitespace().map(argument));
+    let json = folder.join(format!("{}.json", command.replace(' ', "-")));
+    let mut arguments: Vec<String> = command.split(' ').map(str::to_owned).collect();
+    let words = rest.iter().flat_map(|words| words.split_whitespace());
+    arguments.extend(words.map(argument));
     arguments.extend(["--json".to_owned(), json.display().to_string()]);
     if let Err(reason) = run(&arguments) {
         return reason;
     }
-    let schema = schema_of(one.command).unwrap();
+    let schema = schema_of(command).unwrap();
     violations(&schema, &std::fs::read_to_string(json).unwrap())
 }

@@ -6,11 +6,10 @@
 //!   Kalman filters of other packages, and times of a step.
 //! - `browser`: a headless browser for pages.
 //! - `contracts`: results of all commands against their published schemas.
-//! - `dialects`: a test set of formats and dialects of records.
 //! - `calibration`: dense least squares for short records, and signatures by finite differences of the
 //!   independent simulation.
 //! - `noise`: records with faulty noise.
-//! - `positions`: logs of multi-position tests.
+//! - `instruments`: a test set of formats and dialects of records, and logs of multi-position tests.
 //! - `sensor-noise`: rates of a gyro at rest with noise of known parts.
 //! - `setups`: records with gross errors of the set-up.
 //! - `strapdown`: records of strapdown units with the axes of their instruments.
@@ -37,7 +36,7 @@ pub mod contracts;
 mod copy;
 #[cfg(feature = "calibration")]
 pub mod dense_least_squares;
-#[cfg(feature = "dialects")]
+#[cfg(feature = "instruments")]
 pub mod dialects;
 #[cfg(feature = "extended")]
 pub mod extended_comparison;
@@ -51,7 +50,7 @@ pub mod noise_faults;
 mod own_terms;
 #[cfg(feature = "filters")]
 pub mod peer_filters;
-#[cfg(feature = "positions")]
+#[cfg(feature = "instruments")]
 pub mod position_test;
 #[cfg(feature = "filters")]
 pub mod rounding_errors;

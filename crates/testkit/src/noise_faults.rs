@@ -1,10 +1,10 @@
 //! Records with noise that is not as declared, and their innovations by the streaming filter.
 
-use gyrocal::{Drift, FilterSettings, InitialAttitude, PlatformFilter, Site};
+use gyrocal::{Discretisation, FactorisedPlatformFilter, Innovation};
+use gyrocal_calibration::{declared_attitude, filter_settings, run_factorised_filter};
 use gyrocal_diagnosis::{DeclaredNoise, Innovations};
-use gyrocal_record::Record;
-use gyrocal_statistics::deviates::Normals;
-use gyrocal_truth::{Population, Scenario, Term, simulate_with};
+use gyrocal_record::{Bench, Record};
+use gyrocal_truth::{Hidden, Population, Term, simulate_with};
 
 /// Fault of the noise of a record.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,10 +39,6 @@ pub struct FaultyRecord {
 }
 
 /// Record `number` of a population, with a fault and with hidden terms.
-#[expect(
-    clippy::collapsible_match,
-    reason = "a guard that draws a random number hides it"
-)]
 pub fn faulty_record(
     population: &Population,
     number: u64,
@@ -52,87 +48,62 @@ pub fn faulty_record(
     let scenario = population.scenario(number);
     let sigma = scenario.accel_noise_g;
     let mut simulated = scenario.clone();
+    let mut hide = |id: &str, parameters: &[(&str, f64)]| {
+        simulated.hidden.push(Hidden::new(id, parameters).unwrap());
+    };
     match fault {
-        Fault::Ratio(ratio) => simulated.accel_noise_g *= ratio,
-        Fault::Coloured(_) => simulated.accel_noise_g = 0.0,
-        Fault::GyroRatio(ratio) => simulated.gyro_noise_deg_per_h *= ratio,
-        _ => {}
-    }
-    let mut record = simulate_with(&simulated, terms).unwrap().record;
-    let mut normals = Normals::of_seed(scenario.seed ^ 0x5eed);
-    let mut outliers = Vec::new();
-    let mut held = [0.0; 3];
-    for (row, sample) in record.accel_g.iter_mut().enumerate() {
-        for axis in 0..3 {
-            match fault {
-                Fault::Quantised(step) => {
-                    sample[axis] = (sample[axis] / (step * sigma)).round() * (step * sigma);
-                }
-                Fault::Outliers(fraction, size) => {
-                    if normals.uniform() < fraction {
-                        sample[axis] += if normals.uniform() < 0.5 { -size } else { size } * sigma;
-                        outliers.push((row, axis));
-                    }
-                }
-                Fault::Coloured(correlation) => {
-                    let driving = if row == 0 {
-                        1.0
-                    } else {
-                        (1.0 - correlation * correlation).sqrt()
-                    };
-                    held[axis] = correlation * held[axis] + driving * normals.normal();
-                    sample[axis] += sigma * held[axis];
-                }
-                _ => {}
+        Fault::None => {}
+        Fault::Quantised(step) => {
+            for axis in ["x", "y", "z"] {
+                hide(
+                    &format!("accel_{axis}.quantisation"),
+                    &[("lsb", step * sigma)],
+                );
             }
         }
+        Fault::Outliers(fraction, size) => {
+            hide("accel.outliers", &[("fraction", fraction), ("size", size)]);
+        }
+        Fault::Coloured(correlation) => {
+            hide("accel.coloured_noise", &[("correlation", correlation)]);
+        }
+        Fault::Ratio(ratio) => simulated.accel_noise_g *= ratio,
+        Fault::GyroRatio(ratio) => simulated.gyro_noise_deg_per_h *= ratio,
     }
+    let simulation = simulate_with(&simulated, terms).unwrap();
+    let outliers = simulation.truth.outliers.iter().enumerate();
+    let outliers = outliers.flat_map(|(row, which)| {
+        let axes = (0..3).filter(|axis| which[*axis]);
+        axes.map(move |axis| (row, axis))
+    });
     let declared = DeclaredNoise {
         accel_g: [sigma; 3],
         gyro_deg_per_h: scenario.gyro_noise_deg_per_h,
     };
     FaultyRecord {
-        innovations: innovations(&record, &scenario),
-        record,
+        innovations: innovations(&simulation.record, &scenario.bench()),
+        outliers: outliers.collect(),
+        record: simulation.record,
         declared,
         fault,
-        outliers,
     }
 }
 
-/// Innovations of the streaming filter with the declarations of a scenario.
-fn innovations(record: &Record, scenario: &Scenario) -> Innovations {
-    let attitude = InitialAttitude::Angles {
-        angles_rad: scenario.declared_angles_deg().map(f64::to_radians),
-        sigma_rad: scenario.initial_angles_sigma_deg.map(f64::to_radians),
-    };
-    let settings = FilterSettings {
-        drift_sigma: Drift::from_array([1.0; 9]),
-        accel_noise_g: scenario.accel_noise_g,
-        drift_noise_deg_per_h: scenario.gyro_noise_deg_per_h,
-        ..FilterSettings::at_site(Site::at_latitude_deg(scenario.latitude_deg))
-    };
-    let mut filter = PlatformFilter::<f64>::new(&settings, &attitude).unwrap();
+/// Innovations of the streaming filter by what a bench description declares.
+fn innovations(record: &Record, bench: &Bench) -> Innovations {
+    let settings = filter_settings(bench, Discretisation::default());
+    let attitude = declared_attitude(bench).unwrap();
     let mut innovations = Innovations::default();
-    let mut before_s = record.time_s[0];
-    for (time_s, sample) in record.time_s.iter().zip(&record.accel_g) {
-        let innovation = if *time_s > before_s {
-            filter.step(time_s - before_s, sample).unwrap()
-        } else {
-            filter.update(sample).unwrap()
-        };
-        before_s = *time_s;
-        let vertical = filter.platform_c_enu().map(|row| row[2]);
-        let residual = core::array::from_fn(|axis| {
-            if innovation.observed[axis] {
-                innovation.residual[axis]
-            } else {
-                f64::NAN
-            }
+    let mut push = |row: usize, filter: &FactorisedPlatformFilter<f64>, of: &Innovation<f64, 3>| {
+        let residual = core::array::from_fn(|axis| match of.observed[axis] {
+            true => of.residual[axis],
+            false => f64::NAN,
         });
+        let vertical = filter.platform_c_enu().map(|row| row[2]);
         innovations
-            .push(*time_s, residual, &innovation.covariance(), vertical)
+            .push(record.time_s[row], residual, &of.covariance(), vertical)
             .unwrap();
-    }
+    };
+    run_factorised_filter(record, &settings, &attitude, &mut push).unwrap();
     innovations
 }

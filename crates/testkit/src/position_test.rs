@@ -44,11 +44,10 @@ impl UnitErrors {
         force: Vector3<f64>,
         draw: &mut Draw,
     ) -> [[f64; 3]; 2] {
-        let mut noise = || Vector3::new(draw.normal(), draw.normal(), draw.normal());
         let squares = self.gyro_gg.component_mul(&force.component_mul(&force));
         let gyro =
-            rate + self.gyro_bias + self.gyro_g * force + squares + self.gyro_noise * noise();
-        let accel = self.accel_bias + self.accel_matrix * force + self.accel_noise * noise();
+            rate + self.gyro_bias + self.gyro_g * force + squares + self.gyro_noise * vector(draw);
+        let accel = self.accel_bias + self.accel_matrix * force + self.accel_noise * vector(draw);
         [gyro.into(), accel.into()]
     }
 }
@@ -66,7 +65,7 @@ pub fn positions(count: usize, draw: &mut Draw) -> Vec<Vector3<f64>> {
         .chain(edges)
         .take(count)
         .map(|force| {
-            let tilt = 0.02 * Vector3::new(draw.normal(), draw.normal(), draw.normal());
+            let tilt = 0.02 * vector(draw);
             (force.normalize() + tilt).normalize()
         })
         .collect()
@@ -81,8 +80,7 @@ pub fn stop(
     draw: &mut Draw,
 ) -> Samples {
     let [vertical, horizontal] = earth;
-    let other = Vector3::new(draw.normal(), draw.normal(), draw.normal());
-    let north = other.cross(&force).normalize();
+    let north = vector(draw).cross(&force).normalize();
     let rate = vertical * force + horizontal * north;
     let mut log = Samples::default();
     for _ in 0..samples {

@@ -52,6 +52,7 @@
 //! - [`euler_rule`]: the same by the paper's rule, explicit Euler steps of the three angles.
 //! - [`Platform::specific_force_g`]: outputs of ideal accelerometers at given times.
 //! - [`Population`]: random scenarios.
+//! - `plant`, a module behind the feature of that name: simulators of the example plants.
 //!
 //! The same scenario gives the same record, bit for bit: random numbers are ChaCha with one stream for each
 //! seed and purpose, so that hiding an effect leaves all other random numbers as they are; sine,
@@ -74,6 +75,8 @@ mod hidden;
 mod hidden_file;
 mod motion;
 mod noise_free;
+#[cfg(feature = "plant")]
+pub mod plant;
 mod platform;
 mod population;
 mod random;

@@ -6,6 +6,13 @@ use libm::{log, sincos};
 
 use crate::attitude::Attitude;
 
+/// The generator of a seed and a stream.
+pub(crate) fn generator(seed: u64, stream: u64) -> ChaCha12Rng {
+    let mut generator = ChaCha12Rng::seed_from_u64(seed);
+    generator.set_stream(stream);
+    generator
+}
+
 /// Purpose of a stream of random numbers. Drawing more or fewer for one purpose changes no other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Purpose {
@@ -40,8 +47,7 @@ impl Stream {
     pub(crate) fn new(seed: u64, purpose: Purpose) -> Self {
         /// Streams below are for single scenarios.
         const FIRST_OF_POPULATION: u64 = 1 << 32;
-        let mut generator = ChaCha12Rng::seed_from_u64(seed);
-        generator.set_stream(match purpose {
+        let stream = match purpose {
             Purpose::InitialAttitude => 0,
             Purpose::InitialAngles => 1,
             Purpose::GyroNoise => 2,
@@ -51,9 +57,9 @@ impl Stream {
             Purpose::Outliers => 6,
             Purpose::Temperature => 7,
             Purpose::Scenario(number) => FIRST_OF_POPULATION.wrapping_add(number),
-        });
+        };
         Self {
-            generator,
+            generator: generator(seed, stream),
             second: None,
         }
     }

@@ -19,18 +19,46 @@ fn short() -> Scenario {
     }
 }
 
+fn digest(bytes: &[u8]) -> String {
+    let digest = Sha256::digest(bytes);
+    digest.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
 #[test]
 fn a_record_is_the_same_to_the_last_bit_on_every_machine() {
     let record = simulate(&short()).unwrap().record;
     let text = record.to_csv(Path::new("record.csv")).unwrap();
-    let digest: String = Sha256::digest(text.as_bytes())
-        .iter()
-        .map(|byte| format!("{byte:02x}"))
-        .collect();
     assert_eq!(
-        digest,
+        digest(text.as_bytes()),
         "d9f687adff1e6f732e7c2d71a26ab1c5acbbeb0267b1a93765f7f4e3c9b20494"
     );
+}
+
+/// The last effect of each plant, which the servo logs behind a play, and its strength.
+#[cfg(feature = "plant")]
+#[test]
+fn records_of_plants_are_the_same_to_the_last_bit_on_every_machine() {
+    use gyrocal_truth::plant::{Kind, Setting, simulate, strength};
+
+    let found = Kind::ALL.map(|kind| {
+        let setting = Setting {
+            hidden: *kind.facts().effects.last().unwrap(),
+            ..Setting::random(kind, 7, 300)
+        };
+        let run = simulate(&setting, None);
+        let values = run.inputs.iter().chain(&run.outputs).flatten().copied();
+        let values = values.chain([strength(&setting)]);
+        let bytes: Vec<u8> = values.flat_map(f64::to_le_bytes).collect();
+        digest(&bytes)[..16].to_owned()
+    });
+    let expected = [
+        "e0a61bafa3231ad1",
+        "39c58794bbfaaf9d",
+        "5f931166d7c10363",
+        "34ebbcee3028b59a",
+        "dbe322e86dd40527",
+    ];
+    assert_eq!(found, expected);
 }
 
 #[test]

@@ -40,7 +40,7 @@ fn the_answer_for_programs_names_the_cause_and_its_set() {
         "o.json",
     ]);
     let answer: serde_json::Value = serde_json::from_str(&folder.text("o.json")).unwrap();
-    // The simulator's spring softens by -0.05 x^3 (crates/plant-truth).
+    // The simulator's spring softens by -0.05 x^3 (crates/truth).
     assert_eq!(answer["findings"][0]["effect"], "v_rate.x^3");
 }
 

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use gyrocal_plant::{SearchOptions, diagnose};
 use gyrocal_plant_codegen::{Package, Source};
-use gyrocal_plant_truth::{Kind, Setting};
+use gyrocal_truth::plant::{Kind, Setting};
 
 use super::{HIDDEN, LONG, gauges, record};
 use crate::error::Error;

@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use gyrocal_plant::{FittedPlant, LoadedPlant, PlantRecord};
 use gyrocal_plant_codegen::{derive, settings_of_a_command};
-use gyrocal_plant_truth::{Kind, Setting, Stream, simulate};
+use gyrocal_truth::plant::{Kind, Setting, Stream, simulate};
 
-use super::{loaded, record};
+use super::{loaded, prepared, record};
 use crate::error::Error;
 use crate::figure::Figure;
 
@@ -42,14 +42,7 @@ pub(super) fn figures() -> Result<Vec<Figure>, Error> {
     let duffing = loaded(Kind::Duffing)?;
     let setting = Setting::random(Kind::Duffing, SEED, ROWS);
     let still = vec![vec![0.0]; ROWS + 1];
-    let run = simulate(&setting, Some(&still));
-    let free = PlantRecord {
-        inputs: vec![0.0; ROWS],
-        outputs: run.outputs.concat(),
-        time_s: run.time_s,
-        ..PlantRecord::default()
-    };
-    let free = free.prepared(duffing.description(), "simulated")?;
+    let free = prepared(&duffing, simulate(&setting, Some(&still)))?;
     let cases = [
         ("tanks", gauge_of(&tanks, level, &["k1", "k2", "k4"])?),
         (

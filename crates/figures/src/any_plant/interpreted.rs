@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use gyrocal_plant::answer::Diagnosis;
 use gyrocal_plant::{LoadedPlant, PlantError, SearchOptions, diagnose};
-use gyrocal_plant_truth::{Kind, Setting};
+use gyrocal_truth::plant::{Kind, Setting};
 
 use super::{HIDDEN, LONG, record};
 use crate::figure::Figure;

@@ -2,7 +2,7 @@
 
 use gyrocal_plant::answer::{Comparison, OutputError};
 use gyrocal_plant::{LoadedPlant, PlantError, PlantRecord};
-use gyrocal_plant_truth::{Setting, simulate};
+use gyrocal_truth::plant::{Setting, simulate};
 
 /// Gain of the true model over the nominal one, nats, from which on a better prediction is asked for.
 pub(super) const LEAST_GAIN: f64 = 3.0;

@@ -1,9 +1,14 @@
 //! Delays beside the e-process of one effect alone, and the sets at the alarms.
 
-use gyrocal_statistics::{Judgement, Proportion};
-use gyrocal_watch_trials::{Delay, Injected, Trial, delays};
+use gyrocal::watch::EFFECTS_BY_DEFAULT;
+use gyrocal::{ControllerError, FilterSettings, Site};
+use gyrocal_statistics::{Judgement, Proportion, median};
+use serde::{Deserialize, Serialize};
 
-use super::LANES;
+use super::lane::{Injected, Lane};
+use super::noise::Noise;
+use super::platform::Platform;
+use super::{DAY, LANES};
 use crate::error::Error;
 use crate::figure::Figure;
 use crate::resumable;
@@ -11,6 +16,10 @@ use crate::truth::Extent;
 
 /// A population that no constant was tuned on.
 const DELAYS: u64 = 20_261_232;
+/// The population that constants of the watch are tuned on.
+const TUNED_ON: u64 = 20_261_121;
+/// Steps before the effect begins, at least: a filter that has settled.
+const SETTLED: usize = 10 * DAY;
 /// Days that an alarm is waited for.
 const DAYS: usize = 30;
 /// A cell with fewer alarms among its runs has no share of its own: they are those that noise helped.
@@ -24,6 +33,50 @@ const EFFECTS: [(&str, Injected, &str); 4] = [
     ("bias", Injected::Bias(0), "accel_x.bias"),
 ];
 const SIZES: [f64; 3] = [2.0, 4.0, 8.0];
+
+/// An effect whose delay is sought.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Trial {
+    /// The effect.
+    effect: Injected,
+    /// Its id in the catalogue.
+    id: &'static str,
+    /// Root of the information in the first day.
+    sigmas_a_day: f64,
+}
+
+/// A run with an effect.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Delay {
+    /// Days from the onset to the alarm; `None` if there was none. Negative: before the onset.
+    days: Option<f64>,
+    /// The same of the e-process with that effect alone.
+    alone_days: Option<f64>,
+    /// Whether the set at the alarm holds the effect.
+    held: bool,
+    /// Effects in that set.
+    set: usize,
+}
+
+/// Information of a day on sizes of effects over what the watch takes for it, medians over attitudes.
+pub(super) fn information(extent: Extent) -> Result<Vec<Figure>, Error> {
+    let settings = FilterSettings::<f64>::at_site(Site::at_latitude_deg(0.0));
+    let numbers = 0..extent.records(24, 6);
+    let effects = EFFECTS.map(|(_, effect, _)| effect);
+    let all = numbers
+        .clone()
+        .map(|number| units(TUNED_ON, number, &effects, 1e-5));
+    let all: Vec<Vec<f64>> = all.collect::<Result<_, _>>()?;
+    let of_effect = |(place, (kind, _, id)): (usize, &(&str, Injected, &str))| {
+        let taken = EFFECTS_BY_DEFAULT.iter().find(|effect| effect.id == *id);
+        let taken = taken.map_or(f64::NAN, |effect| effect.information_of_a_day(&settings));
+        let found: Vec<f64> = all.iter().map(|of| of[place]).collect();
+        let name = format!("{kind}: information of a day over the constant of the watch, median");
+        let figure = Figure::within(&name, [0.5, 2.0], median(&found) / taken);
+        figure.over(all.len(), format!("{TUNED_ON}, {numbers:?}"))
+    };
+    Ok(EFFECTS.iter().enumerate().map(of_effect).collect())
+}
 
 pub(super) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
     let small = extent.small;
@@ -47,7 +100,7 @@ pub(super) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
         let seeds = 0..platforms;
         let cell = format!("delays {walk:e}");
         let campaign = resumable::campaign("watch", &cell, seeds.clone(), small)?;
-        let job = |number| delays(DELAYS, number, &trials, lanes, days, walk);
+        let job = |number| delays(number, &trials, lanes, days, walk);
         let outcome = campaign.run(job, |_| ())?;
         for (place, trial) in trials.iter().enumerate() {
             let runs: Vec<Delay> = outcome
@@ -144,4 +197,69 @@ fn delay_figure(name: &str, runs: &[Delay], small: bool) -> Figure {
         ),
         ..Figure::within(&name, [0.0, 1.4], days / alone)
     }
+}
+
+/// Runs of one platform with each trial, `lanes` of each, for at most `days` from the onset. `walk` is
+/// declared and there, deg/h/√h.
+fn delays(
+    number: u64,
+    trials: &[Trial],
+    lanes: usize,
+    days: usize,
+    walk: f64,
+) -> Result<Vec<Vec<Delay>>, ControllerError> {
+    let onset = onset(number);
+    let effects: Vec<Injected> = trials.iter().map(|trial| trial.effect).collect();
+    let units = units(DELAYS, number, &effects, walk)?;
+    let mut all = Vec::new();
+    for (trial, unit) in trials.iter().zip(&units) {
+        let size = trial.sigmas_a_day / unit.sqrt();
+        let mut effects = EFFECTS_BY_DEFAULT.iter();
+        let index = effects.position(|effect| effect.id == trial.id);
+        let index = index.unwrap_or(usize::MAX);
+        for _ in 0..lanes {
+            let lane = Lane::noisy([DELAYS, number], all.len(), Noise::Declared, walk);
+            let mut lane = lane.with(trial.effect, size, onset);
+            lane.alone = Some((index, None));
+            all.push(lane);
+        }
+    }
+    let platform = Platform::new(DELAYS, number, onset + days * DAY, walk)?;
+    platform.run(&mut all, |_, lanes| {
+        lanes.iter().all(|lane| {
+            lane.alarm.is_some() && lane.alone.is_some_and(|(_, alarm)| alarm.is_some())
+        })
+    })?;
+    let since = |row: usize| (row as f64 - onset as f64) / DAY as f64;
+    let of_lane = |lane: &Lane| {
+        let (index, alone) = lane.alone.unwrap_or((usize::MAX, None));
+        Delay {
+            days: lane.alarm.map(|(row, _)| since(row)),
+            alone_days: alone.map(since),
+            held: lane.set.contains(&index),
+            set: lane.set.len(),
+        }
+    };
+    let of_trial = |lanes: &[Lane]| lanes.iter().map(of_lane).collect();
+    Ok(all.chunks(lanes.max(1)).map(of_trial).collect())
+}
+
+/// The step at which the effects of a platform begin.
+fn onset(number: u64) -> usize {
+    SETTLED + (number as usize * 37) % 120
+}
+
+/// Information that a platform shows on a unit of each effect in its first day.
+fn units(
+    population: u64,
+    number: u64,
+    effects: &[Injected],
+    walk: f64,
+) -> Result<Vec<f64>, ControllerError> {
+    let onset = onset(number);
+    let lanes = effects.iter();
+    let lanes = lanes.map(|effect| Lane::silent().with(*effect, 1.0, onset));
+    let mut lanes: Vec<Lane> = lanes.collect();
+    Platform::new(population, number, onset + DAY + 1, walk)?.run(&mut lanes, |_, _| false)?;
+    Ok(lanes.iter().map(|lane| lane.information[1]).collect())
 }

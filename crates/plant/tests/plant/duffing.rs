@@ -1,46 +1,22 @@
 //! The oscillator of `examples/duffing`: records of an independent simulator, effects hidden there.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use gyrocal_plant::{ColumnMap, LoadedPlant, PlantRecord, SearchOptions, diagnose};
-use gyrocal_plant_truth::{Kind, Setting, simulate};
+use gyrocal_plant::{ColumnMap, SearchOptions, diagnose};
+use gyrocal_truth::plant::{Kind, Setting, simulate};
+
+use crate::{loaded, oscillator, record};
 
 fn example(file: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../../examples/duffing")
-        .join(file)
-}
-
-fn plant() -> LoadedPlant {
-    LoadedPlant::read(&example("plant.json")).unwrap()
-}
-
-/// The oscillator of the example: what is hidden is a spring that softens.
-fn setting(seed: u64) -> Setting {
-    Setting {
-        parameters: vec![4.6, 0.27, 1.1],
-        initial: vec![0.2, -0.4],
-        hidden: ("v_rate.x^3", -0.05),
-        ..Setting::random(Kind::Duffing, seed, 800)
-    }
-}
-
-fn record(plant: &LoadedPlant, setting: &Setting) -> PlantRecord {
-    let run = simulate(setting, None);
-    let record = PlantRecord {
-        time_s: run.time_s,
-        inputs: run.inputs.concat(),
-        outputs: run.outputs.concat(),
-        ..PlantRecord::default()
-    };
-    record.prepared(plant.description(), "simulated").unwrap()
+    crate::example(Kind::Duffing, file)
 }
 
 #[test]
 fn the_records_of_the_example_are_those_of_the_simulator() {
     let files = [("record.csv", 41), ("later.csv", 42)];
     for (file, seed) in files {
-        let text = simulate(&setting(seed), None).csv(&["drive_n"], &["displacement_m"]);
+        let text =
+            simulate(&oscillator(seed, 800, -0.05), None).csv(&["drive_n"], &["displacement_m"]);
         if std::env::var_os("GYROCAL_WRITE_EXAMPLES").is_some() {
             std::fs::write(example(file), &text).unwrap();
         }
@@ -54,7 +30,7 @@ fn the_records_of_the_example_are_those_of_the_simulator() {
 
 #[test]
 fn the_example_names_its_hidden_effect_and_gains_on_the_later_record() {
-    let plant = plant();
+    let plant = loaded(Kind::Duffing);
     let columns = ColumnMap::read(&example("columns.toml")).unwrap();
     let read = |file| columns.record(plant.description(), &example(file)).unwrap();
     let diagnosed = diagnose(
@@ -86,7 +62,7 @@ fn the_example_names_its_hidden_effect_and_gains_on_the_later_record() {
 
 #[test]
 fn a_clean_record_with_misdeclared_noise_has_no_finding() {
-    let plant = plant();
+    let plant = loaded(Kind::Duffing);
     for (seed, noise) in [(501, 0.5), (502, 2.0)] {
         let setting = Setting {
             noise,
@@ -106,8 +82,8 @@ fn a_clean_record_with_misdeclared_noise_has_no_finding() {
 
 #[test]
 fn a_sensor_gain_is_taken_up_by_the_gain_of_the_drive() {
-    let plant = plant();
-    let record = record(&plant, &setting(7));
+    let plant = loaded(Kind::Duffing);
+    let record = record(&plant, &oscillator(7, 800, -0.05));
     let answer = diagnose(&plant, record, None, &SearchOptions::default())
         .unwrap()
         .answer;

@@ -1,31 +1,13 @@
 //! Gauges, weak excitation, and inputs that are refused in words.
 
-use std::path::{Path, PathBuf};
+use gyrocal_plant::{ColumnMap, FittedPlant, SearchOptions, diagnose};
+use gyrocal_truth::plant::{Kind, Setting, simulate};
 
-use gyrocal_plant::{ColumnMap, FittedPlant, LoadedPlant, PlantRecord, SearchOptions, diagnose};
-use gyrocal_plant_truth::{Kind, Setting, simulate};
-
-fn example(plant: &str, file: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../../examples")
-        .join(plant)
-        .join(file)
-}
-
-fn record(plant: &LoadedPlant, setting: &Setting) -> PlantRecord {
-    let run = simulate(setting, None);
-    let record = PlantRecord {
-        time_s: run.time_s,
-        inputs: run.inputs.concat(),
-        outputs: run.outputs.concat(),
-        ..PlantRecord::default()
-    };
-    record.prepared(plant.description(), "simulated").unwrap()
-}
+use crate::{loaded, record};
 
 #[test]
 fn the_scale_of_the_unmeasured_tank_is_a_gauge() {
-    let plant = LoadedPlant::read(&example("tanks", "plant.json")).unwrap();
+    let plant = loaded(Kind::Tanks);
     let setting = Setting::random(Kind::Tanks, 3, 300);
     let fit = FittedPlant::nominal(&plant, record(&plant, &setting), &[]).unwrap();
     let (held, directions) = fit.to_hold().unwrap();
@@ -46,7 +28,7 @@ fn the_scale_of_the_unmeasured_tank_is_a_gauge() {
 
 #[test]
 fn an_input_that_never_moves_is_weak_excitation_and_no_gauge() {
-    let plant = LoadedPlant::read(&example("duffing", "plant.json")).unwrap();
+    let plant = loaded(Kind::Duffing);
     let mut still = record(&plant, &Setting::random(Kind::Duffing, 4, 300));
     // A free oscillation: the drive is off.
     let inputs = vec![vec![0.0]; still.len() + 1];
@@ -73,7 +55,7 @@ fn an_input_that_never_moves_is_weak_excitation_and_no_gauge() {
 
 #[test]
 fn a_driven_oscillator_has_neither() {
-    let plant = LoadedPlant::read(&example("duffing", "plant.json")).unwrap();
+    let plant = loaded(Kind::Duffing);
     let setting = Setting::random(Kind::Duffing, 5, 300);
     let fit = FittedPlant::nominal(&plant, record(&plant, &setting), &[]).unwrap();
     assert_eq!(fit.null_directions().unwrap(), []);
@@ -81,7 +63,7 @@ fn a_driven_oscillator_has_neither() {
 
 #[test]
 fn a_missing_column_is_told_with_those_that_are_there() {
-    let plant = LoadedPlant::read(&example("servo", "plant.json")).unwrap();
+    let plant = loaded(Kind::Servo);
     let directory = std::env::temp_dir().join(format!("gyrocal-plant-{}", std::process::id()));
     std::fs::create_dir_all(&directory).unwrap();
     let (map, data) = (directory.join("map.toml"), directory.join("data.csv"));

@@ -1,9 +1,10 @@
 //! Interpreted functions and generated Rust of one program: the same names and sets, and numbers that
 //! differ by rounding only.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use gyrocal_plant::{ColumnMap, LoadedPlant, SearchOptions, diagnose};
+use gyrocal_plant::{ColumnMap, SearchOptions, diagnose};
+use gyrocal_truth::plant::Kind;
 
 #[path = "../../../../examples/duffing/plant.rs"]
 #[rustfmt::skip]
@@ -17,14 +18,12 @@ use gyrocal_plant::{ColumnMap, LoadedPlant, SearchOptions, diagnose};
 mod duffing;
 
 fn example(file: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../../examples/duffing")
-        .join(file)
+    crate::example(Kind::Duffing, file)
 }
 
 #[test]
 fn both_diagnose_the_same() {
-    let interpreted = LoadedPlant::read(&example("plant.json")).unwrap();
+    let interpreted = crate::loaded(Kind::Duffing);
     let generated = interpreted.with_model(duffing::Duffing).unwrap();
     let columns = ColumnMap::read(&example("columns.toml")).unwrap();
     let answers = [&interpreted, &generated].map(|plant| {

@@ -1,10 +1,10 @@
 //! Delay and play of inputs.
 
-use std::path::Path;
-
 use gyrocal_plant::answer::{Diagnosis, Found};
-use gyrocal_plant::{LoadedPlant, PlantRecord, SearchOptions, diagnose};
-use gyrocal_plant_truth::{Kind, Run, Setting, simulate};
+use gyrocal_plant::{SearchOptions, diagnose};
+use gyrocal_truth::plant::{Kind, Run, Setting, simulate};
+
+use crate::{loaded, prepared};
 
 /// Seeds that nothing was tuned on.
 const SEED: u64 = 72_000;
@@ -12,15 +12,8 @@ const SEED: u64 = 72_000;
 const ROWS: usize = 600;
 
 fn diagnosed(kind: Kind, run: Run) -> Diagnosis {
-    let file = format!("../../examples/{}/plant.json", kind.facts().name);
-    let plant = LoadedPlant::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join(file)).unwrap();
-    let record = PlantRecord {
-        time_s: run.time_s,
-        inputs: run.inputs.concat(),
-        outputs: run.outputs.concat(),
-        ..PlantRecord::default()
-    };
-    let record = record.prepared(plant.description(), "simulated").unwrap();
+    let plant = loaded(kind);
+    let record = prepared(&plant, run);
     let diagnosed = diagnose(&plant, record, None, &SearchOptions::default());
     diagnosed.unwrap().answer
 }

@@ -1,38 +1,20 @@
 //! Forecasts of runs of an oscillator, and the gain within records, beside what other fits give.
 
-use std::path::Path;
-
 use gyrocal_hypothesis::FittedModel as _;
 use gyrocal_plant::answer::{Diagnosis, NextRun};
 use gyrocal_plant::{
     ColumnMap, Diagnosed, FittedPlant, LoadedPlant, NamedRecord, PlantRecord, SearchOptions,
     diagnose, diagnose_records,
 };
-use gyrocal_plant_truth::{Kind, Setting, simulate};
+use gyrocal_truth::plant::Kind;
+
+use crate::{loaded, oscillator};
 
 const ROWS: usize = 400;
 
-fn plant() -> LoadedPlant {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/duffing/plant.json");
-    LoadedPlant::read(&file).unwrap()
-}
-
 /// The oscillator from one initial state; the seed is that of its input and of its noise.
 fn record(plant: &LoadedPlant, seed: u64, size: f64) -> PlantRecord {
-    let setting = Setting {
-        parameters: vec![4.6, 0.27, 1.1],
-        initial: vec![0.2, -0.4],
-        hidden: ("v_rate.x^3", size),
-        ..Setting::random(Kind::Duffing, seed, ROWS)
-    };
-    let run = simulate(&setting, None);
-    let record = PlantRecord {
-        time_s: run.time_s,
-        inputs: run.inputs.concat(),
-        outputs: run.outputs.concat(),
-        ..PlantRecord::default()
-    };
-    record.prepared(plant.description(), "simulated").unwrap()
+    crate::record(plant, &oscillator(seed, ROWS, size))
 }
 
 fn named(name: &str, record: PlantRecord) -> NamedRecord {
@@ -62,7 +44,7 @@ fn forecast(diagnosed: &mut Diagnosed, run: &PlantRecord) -> NextRun {
 
 #[test]
 fn standard_deviations_after_the_run_are_as_forecast() {
-    let plant = plant();
+    let plant = loaded(Kind::Duffing);
     let [first, second] = [41, 42].map(|seed| record(&plant, seed, -0.05));
     let mut diagnosed = alone(&plant, &first);
     let forecast = forecast(&mut diagnosed, &second);
@@ -88,7 +70,7 @@ fn standard_deviations_after_the_run_are_as_forecast() {
 
 #[test]
 fn the_run_that_moves_more_comes_first() {
-    let plant = plant();
+    let plant = loaded(Kind::Duffing);
     let first = record(&plant, 41, -0.05);
     let mut diagnosed = alone(&plant, &first);
     let scaled = |factor: f64| {
@@ -110,7 +92,7 @@ fn the_run_that_moves_more_comes_first() {
 
 #[test]
 fn rivals_leave_as_often_as_forecast() {
-    let plant = plant();
+    let plant = loaded(Kind::Duffing);
     let (mut expected, mut variance, mut seen, mut pairs) = (0.0, 0.0, 0.0, 0);
     for seed in 0..24 {
         let [first, second] = [800 + seed, 900 + seed].map(|seed| record(&plant, seed, SMALL));
@@ -155,7 +137,7 @@ fn log_evidence(fitted: &FittedPlant) -> f64 {
 
 #[test]
 fn the_gain_in_a_left_out_record_is_that_of_fits_without_it() {
-    let plant = plant();
+    let plant = loaded(Kind::Duffing);
     let records = [41, 42].map(|seed| record(&plant, seed, -0.05));
     let both = records.clone().map(|record| named("", record)).to_vec();
     let found = diagnose_records(&plant, both, None, &SearchOptions::default()).unwrap();
@@ -179,7 +161,7 @@ fn the_gain_in_a_left_out_record_is_that_of_fits_without_it() {
 
 #[test]
 fn parts_of_a_record_gain_by_what_is_there_and_nothing_is_said_of_nothing() {
-    let plant = plant();
+    let plant = loaded(Kind::Duffing);
     let Diagnosed {
         answer, searched, ..
     } = alone(&plant, &record(&plant, 41, -0.05));
@@ -200,7 +182,7 @@ fn parts_of_a_record_gain_by_what_is_there_and_nothing_is_said_of_nothing() {
 
 #[test]
 fn a_run_needs_no_outputs_and_one_that_the_plant_does_not_bear_is_told() {
-    let plant = plant();
+    let plant = loaded(Kind::Duffing);
     let folder = tempfile::tempdir().unwrap();
     let map = folder.path().join("columns.toml");
     std::fs::write(

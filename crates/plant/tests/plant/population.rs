@@ -1,11 +1,11 @@
 //! Plants of a population, two of them under feedback: clean records with noise that is misdeclared, and
 //! records with one hidden effect, from simulators that share no code with the models.
 
-use std::path::Path;
-
 use gyrocal_plant::answer::Diagnosis;
-use gyrocal_plant::{LoadedPlant, PlantRecord, SearchOptions, diagnose};
-use gyrocal_plant_truth::{Kind, Setting, Stream, simulate, strength, with_strength};
+use gyrocal_plant::{SearchOptions, diagnose};
+use gyrocal_truth::plant::{Kind, Setting, Stream, strength, with_strength};
+
+use crate::{loaded, record};
 
 /// Seeds that nothing was tuned on.
 const FIRST_SEED: u64 = 71_000;
@@ -15,20 +15,15 @@ const ROWS: usize = 600;
 const PLANTS: [Kind; 3] = [Kind::Duffing, Kind::Servo, Kind::CartPole];
 
 fn diagnosed(setting: &Setting) -> Diagnosis {
-    let file = format!("../../examples/{}/plant.json", setting.kind.facts().name);
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(file);
-    let plant = LoadedPlant::read(&path).unwrap();
-    let run = simulate(setting, None);
-    let record = PlantRecord {
-        time_s: run.time_s,
-        inputs: run.inputs.concat(),
-        outputs: run.outputs.concat(),
-        ..PlantRecord::default()
-    };
-    let record = record.prepared(plant.description(), "simulated").unwrap();
-    diagnose(&plant, record, None, &SearchOptions::default())
-        .unwrap()
-        .answer
+    let plant = loaded(setting.kind);
+    diagnose(
+        &plant,
+        record(&plant, setting),
+        None,
+        &SearchOptions::default(),
+    )
+    .unwrap()
+    .answer
 }
 
 #[test]

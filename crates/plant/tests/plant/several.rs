@@ -1,13 +1,13 @@
 //! Several records of one oscillator: information adds, initial states are those of each record.
 
-use std::path::Path;
-
 use gyrocal_hypothesis::FittedModel as _;
 use gyrocal_plant::{
     FittedPlant, LoadedPlant, NamedRecord, PlantRecord, SearchOptions, diagnose, diagnose_records,
 };
-use gyrocal_plant_truth::{Kind, Setting, simulate};
+use gyrocal_truth::plant::{Kind, Setting};
 use nalgebra::DMatrix;
+
+use crate::{loaded, oscillator};
 
 const ROWS: usize = 400;
 
@@ -17,28 +17,14 @@ const STARTS: [[f64; 2]; 3] = [[0.2, -0.4], [-1.1, 0.9], [0.7, 1.5]];
 /// Of the oscillator: two states, three parameters.
 const STATES: usize = 2;
 
-fn plant() -> LoadedPlant {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/duffing/plant.json");
-    LoadedPlant::read(&file).unwrap()
-}
-
 fn record(plant: &LoadedPlant, index: usize, size: f64) -> NamedRecord {
     let setting = Setting {
-        parameters: vec![4.6, 0.27, 1.1],
         initial: STARTS[index].to_vec(),
-        hidden: ("v_rate.x^3", size),
-        ..Setting::random(Kind::Duffing, 610 + index as u64, ROWS)
-    };
-    let run = simulate(&setting, None);
-    let record = PlantRecord {
-        time_s: run.time_s,
-        inputs: run.inputs.concat(),
-        outputs: run.outputs.concat(),
-        ..PlantRecord::default()
+        ..oscillator(610 + index as u64, ROWS, size)
     };
     NamedRecord {
         name: format!("record {index}"),
-        record: record.prepared(plant.description(), "simulated").unwrap(),
+        record: crate::record(plant, &setting),
     }
 }
 
@@ -60,7 +46,7 @@ fn information(fitted: &FittedPlant) -> DMatrix<f64> {
 
 #[test]
 fn the_information_of_the_records_adds() {
-    let plant = plant();
+    let plant = loaded(Kind::Duffing);
     let records: Vec<PlantRecord> = records(&plant, 0.0)
         .into_iter()
         .map(|one| one.record)
@@ -97,7 +83,7 @@ fn the_information_of_the_records_adds() {
 fn a_record_that_is_cut_is_the_record_but_for_what_begins_anew() {
     // The states at the cut are free: no fit to the parts is worse, and with two more unknowns it is better by
     // chi-square with two degrees of freedom.
-    let plant = plant();
+    let plant = loaded(Kind::Duffing);
     let whole = record(&plant, 0, 0.0).record;
     let middle = ROWS / 2;
     let part = |rows: std::ops::Range<usize>| PlantRecord {
@@ -121,7 +107,7 @@ fn a_record_that_is_cut_is_the_record_but_for_what_begins_anew() {
 
 #[test]
 fn an_effect_is_found_together_and_told_for_each() {
-    let plant = plant();
+    let plant = loaded(Kind::Duffing);
     let records = records(&plant, -0.05);
     let options = SearchOptions::default();
     let found = diagnose_records(&plant, records.clone(), None, &options).unwrap();
@@ -167,7 +153,7 @@ fn an_effect_is_found_together_and_told_for_each() {
 
 #[test]
 fn one_record_is_as_alone_and_a_change_belongs_to_its_record() {
-    let plant = plant();
+    let plant = loaded(Kind::Duffing);
     let mut one = record(&plant, 0, 0.0);
     let options = SearchOptions::default();
     let alone = diagnose(&plant, one.record.clone(), None, &options).unwrap();
@@ -200,7 +186,7 @@ fn one_record_is_as_alone_and_a_change_belongs_to_its_record() {
 
 #[test]
 fn records_with_common_rows_are_refused() {
-    let plant = plant();
+    let plant = loaded(Kind::Duffing);
     let one = record(&plant, 0, 0.0);
     let copy = NamedRecord {
         name: "copy".to_owned(),

@@ -71,15 +71,10 @@ pub fn large_effects(scenario: &Scenario, random: &mut Draw) -> Vec<Hidden> {
     let gyro = |name: &str| format!("gyro_{}.{name}", AXES[(onset_s as usize) % 3]);
     let accel = |name: &str| format!("accel_{}.{name}", AXES[(onset_s as usize) % 3]);
     let size = random.sign() * random.log_uniform([0.1, 1.0]);
+    #[rustfmt::skip] // a table
     let effects = [
-        (
-            gyro("step"),
-            vec![("size", 0.3 * size), ("onset_s", onset_s)],
-        ),
-        (
-            gyro("warmup"),
-            vec![("size", size), ("time_constant_h", 6.0)],
-        ),
+        (gyro("step"), vec![("size", 0.3 * size), ("onset_s", onset_s)]),
+        (gyro("warmup"), vec![("size", size), ("time_constant_h", 6.0)]),
         (gyro("ramp"), vec![("size", 0.3 * size)]),
         (gyro("diurnal"), vec![("sine", 0.2 * size), ("cosine", 0.1)]),
         (gyro("random_walk"), vec![("size", 2e-3)]),
@@ -89,29 +84,12 @@ pub fn large_effects(scenario: &Scenario, random: &mut Draw) -> Vec<Hidden> {
         (accel("scale"), vec![("size", 1e-4 * size)]),
         (accel("ramp"), vec![("size", 3e-5 * size)]),
         (accel("noise"), vec![("ratio", 10.0)]),
-        (
-            "accel_xy.nonorthogonality".to_owned(),
-            vec![("size", 1e-4 * size)],
-        ),
-        (
-            "accel.outliers".to_owned(),
-            vec![("fraction", 0.02), ("size", 100.0)],
-        ),
-        (
-            "accel.coloured_noise".to_owned(),
-            vec![("correlation", 0.5)],
-        ),
+        ("accel_xy.nonorthogonality".to_owned(), vec![("size", 1e-4 * size)]),
+        ("accel.outliers".to_owned(), vec![("fraction", 0.02), ("size", 100.0)]),
+        ("accel.coloured_noise".to_owned(), vec![("correlation", 0.5)]),
         ("site.latitude".to_owned(), vec![("size", 0.1 * size)]),
         ("clock.rate".to_owned(), vec![("size", 2.7e-3)]),
-        (
-            "platform.knock".to_owned(),
-            vec![
-                ("x_deg", 0.2 * size),
-                ("y_deg", 0.2),
-                ("z_deg", 0.1),
-                ("onset_s", onset_s),
-            ],
-        ),
+        ("platform.knock".to_owned(), vec![("x_deg", 0.2 * size), ("y_deg", 0.2), ("z_deg", 0.1), ("onset_s", onset_s)]),
     ];
     let drawn = random.one_of(&effects);
     Hidden::new(&drawn.0, &drawn.1).into_iter().collect()

@@ -2,8 +2,7 @@
 //! parameters and initial states takes up, over the noise. It is computed from differences of simulations,
 //! by no code of a diagnosis.
 
-use crate::setting::Setting;
-use crate::simulate;
+use super::{Setting, simulate};
 
 /// Relative change of a parameter for a difference.
 const CHANGE: f64 = 1e-4;
@@ -29,40 +28,26 @@ pub fn strength(setting: &Setting) -> f64 {
         hidden: ("", 0.0),
         ..setting.clone()
     };
-    let change = |changed: &dyn Fn(&mut Setting, f64), by: f64| {
+    let change = |by: f64, place: &dyn Fn(&mut Setting) -> &mut f64| -> Vec<f64> {
         let moved = [by, -by].map(|by| {
             let mut other = without.clone();
-            changed(&mut other, by);
+            *place(&mut other) += by;
             outputs(&other, &inputs)
         });
         let pairs = moved[0].iter().zip(&moved[1]);
-        pairs
-            .map(|(a, b)| (a - b) / (2.0 * by))
-            .collect::<Vec<f64>>()
+        pairs.map(|(a, b)| (a - b) / (2.0 * by)).collect()
     };
-    let mut columns: Vec<Vec<f64>> = Vec::new();
-    for index in 0..setting.parameters.len() {
-        let size = CHANGE * setting.parameters[index];
-        columns.push(change(&|other, by| other.parameters[index] += by, size));
-    }
-    for index in 0..setting.initial.len() {
-        let size = CHANGE * setting.kind.facts().initial[index];
-        columns.push(change(&|other, by| other.initial[index] += by, size));
-    }
-    let base = outputs(&without, &inputs);
-    let mut left: Vec<f64> = outputs(setting, &inputs)
-        .iter()
-        .zip(&base)
-        .map(|(with, without)| with - without)
-        .collect();
+    let parameters = setting.parameters.iter().enumerate();
+    let parameters =
+        parameters.map(|(i, size)| change(CHANGE * size, &|other| &mut other.parameters[i]));
+    let initial = setting.kind.facts().initial.iter().enumerate();
+    let initial = initial.map(|(i, size)| change(CHANGE * size, &|other| &mut other.initial[i]));
     // Gram and Schmidt, twice for rounding.
     let mut basis: Vec<Vec<f64>> = Vec::new();
-    for mut column in columns {
+    for mut column in parameters.chain(initial) {
         let whole = dot(&column, &column);
         for _ in 0..2 {
-            for other in &basis {
-                project(&mut column, other);
-            }
+            project(&mut column, &basis);
         }
         let rest = dot(&column, &column);
         // Of a gauge only rounding is left.
@@ -72,9 +57,11 @@ pub fn strength(setting: &Setting) -> f64 {
             basis.push(column);
         }
     }
-    for other in &basis {
-        project(&mut left, other);
+    let mut left = outputs(setting, &inputs);
+    for (with, without) in left.iter_mut().zip(outputs(&without, &inputs)) {
+        *with -= without;
     }
+    project(&mut left, &basis);
     libm::sqrt(dot(&left, &left)) / setting.noise.max(f64::MIN_POSITIVE)
 }
 
@@ -99,9 +86,12 @@ fn dot(one: &[f64], other: &[f64]) -> f64 {
     one.iter().zip(other).map(|(a, b)| a * b).sum()
 }
 
-fn project(vector: &mut [f64], unit: &[f64]) {
-    let along = dot(vector, unit);
-    for (value, unit) in vector.iter_mut().zip(unit) {
-        *value -= along * unit;
+/// Takes out of a vector its parts along unit vectors, one after the other.
+fn project(vector: &mut [f64], units: &[Vec<f64>]) {
+    for unit in units {
+        let along = dot(vector, unit);
+        for (value, unit) in vector.iter_mut().zip(unit) {
+            *value -= along * unit;
+        }
     }
 }

@@ -1,12 +1,11 @@
 //! Two tanks, one above the other: a pump fills the upper, its outflow the lower, whose level is measured by
 //! a sensor that saturates. The upper tank overflows, in part into the lower one.
 
-use crate::random::Stream;
-use crate::run::{Moment, Multisine, Run, Simulator};
-use crate::setting::{Facts, Setting};
+use super::run::{Moment, Multisine, run};
+use super::{Facts, Run, Setting, Stream};
 
 /// Facts: outflow of the upper tank, inflow and outflow of the lower, pump.
-pub(crate) const FACTS: Facts = Facts {
+pub(super) const FACTS: Facts = Facts {
     name: "tanks",
     parameters: &[0.05, 0.05, 0.05, 0.04],
     spread: 1.08,
@@ -23,10 +22,10 @@ pub(crate) const FACTS: Facts = Facts {
         ("y.bias", 0.2),
         ("k3.step", 0.002),
     ],
+    step_s: 4.0,
+    interpolate: false,
+    simulate,
 };
-
-/// Time between rows, s.
-const STEP_S: f64 = 4.0;
 
 /// Level at which the upper tank begins to overflow.
 const BRIM: f64 = 5.0;
@@ -34,7 +33,7 @@ const BRIM: f64 = 5.0;
 /// The highest reading of the sensor.
 const FULL: f64 = 10.0;
 
-pub(crate) fn simulate(setting: &Setting, replayed: Option<&[Vec<f64>]>) -> Run {
+fn simulate(setting: &Setting, replayed: Option<&[Vec<f64>]>) -> Run {
     let k: [f64; 4] = core::array::from_fn(|index| setting.parameters[index]);
     let pump = Multisine::new(&mut Stream::new(setting.seed, 1), 0.7, [3e-4, 1e-2]);
     let size = |effect| setting.size(effect);
@@ -56,13 +55,11 @@ pub(crate) fn simulate(setting: &Setting, replayed: Option<&[Vec<f64>]>) -> Run 
         let lower = at.state[1];
         vec![(lower + size("y.y^2") * lower * lower + size("y.bias")).min(FULL)]
     };
-    let simulator = Simulator {
+    run(
         setting,
-        step_s: STEP_S,
-        interpolate: false,
-        play: 0.0,
-        rates: &rates,
-        outputs: &outputs,
-    };
-    simulator.run(|time_s, _| vec![(2.7 + pump.at(time_s)).max(0.3)], replayed)
+        rates,
+        outputs,
+        |time_s, _| vec![(2.7 + pump.at(time_s)).max(0.3)],
+        replayed,
+    )
 }

@@ -1,11 +1,10 @@
 //! A mass on a spring, driven by a known force.
 
-use crate::random::Stream;
-use crate::run::{Moment, Multisine, Run, Simulator};
-use crate::setting::{Facts, Setting};
+use super::run::{Moment, Multisine, run};
+use super::{Facts, Run, Setting, Stream};
 
 /// Facts: stiffness, damping and gain of the drive over mass.
-pub(crate) const FACTS: Facts = Facts {
+pub(super) const FACTS: Facts = Facts {
     name: "duffing",
     parameters: &[4.2, 0.3, 1.1],
     spread: 1.25,
@@ -22,12 +21,12 @@ pub(crate) const FACTS: Facts = Facts {
         ("y.lag", 0.01),
         ("k.step", 0.05),
     ],
+    step_s: 0.05,
+    interpolate: true,
+    simulate,
 };
 
-/// Time between rows, s.
-const STEP_S: f64 = 0.05;
-
-pub(crate) fn simulate(setting: &Setting, replayed: Option<&[Vec<f64>]>) -> Run {
+fn simulate(setting: &Setting, replayed: Option<&[Vec<f64>]>) -> Run {
     let [stiffness, damping, gain] = core::array::from_fn(|index| setting.parameters[index]);
     let drive = Multisine::new(&mut Stream::new(setting.seed, 1), 1.6, [0.05, 0.8]);
     let size = |effect| setting.size(effect);
@@ -48,13 +47,11 @@ pub(crate) fn simulate(setting: &Setting, replayed: Option<&[Vec<f64>]>) -> Run 
         let past = x - lag_s * v + 0.5 * lag_s * lag_s * rates(at)[1];
         vec![past + size("y.y^2") * x * x]
     };
-    let simulator = Simulator {
+    run(
         setting,
-        step_s: STEP_S,
-        interpolate: true,
-        play: 0.0,
-        rates: &rates,
-        outputs: &outputs,
-    };
-    simulator.run(|time_s, _| vec![drive.at(time_s)], replayed)
+        rates,
+        outputs,
+        |time_s, _| vec![drive.at(time_s)],
+        replayed,
+    )
 }

@@ -1,11 +1,10 @@
 //! Roll, pitch and yaw of a quadrotor, held by feedback of its angles and the rates of its gyros.
 
-use crate::random::Stream;
-use crate::run::{Moment, Multisine, Run, Simulator};
-use crate::setting::{Facts, Setting};
+use super::run::{Moment, Multisine, run};
+use super::{Facts, Run, Setting, Stream};
 
 /// Facts: gains of the three torques over inertia, damping of the three rates, coupling by the inertia.
-pub(crate) const FACTS: Facts = Facts {
+pub(super) const FACTS: Facts = Facts {
     name: "quadrotor_diagnosed",
     parameters: &[40.0, 40.0, 8.0, 0.6, 0.6, 0.3, 0.7],
     spread: 1.25,
@@ -22,12 +21,12 @@ pub(crate) const FACTS: Facts = Facts {
         ("gyro_r.bias", 0.02),
         ("l.step", -2.0),
     ],
+    step_s: 0.02,
+    interpolate: false,
+    simulate,
 };
 
-/// Time between rows, s.
-const STEP_S: f64 = 0.02;
-
-pub(crate) fn simulate(setting: &Setting, replayed: Option<&[Vec<f64>]>) -> Run {
+fn simulate(setting: &Setting, replayed: Option<&[Vec<f64>]>) -> Run {
     let k: [f64; 7] = core::array::from_fn(|index| setting.parameters[index]);
     let mut random = Stream::new(setting.seed, 1);
     let wanted: [Multisine; 3] =
@@ -59,14 +58,6 @@ pub(crate) fn simulate(setting: &Setting, replayed: Option<&[Vec<f64>]>) -> Run 
         readings[5] += size("gyro_r.bias");
         readings
     };
-    let simulator = Simulator {
-        setting,
-        step_s: STEP_S,
-        interpolate: false,
-        play: 0.0,
-        rates: &rates,
-        outputs: &outputs,
-    };
     let feedback = |time_s: f64, readings: &[f64]| {
         (0..3)
             .map(|axis| {
@@ -76,5 +67,5 @@ pub(crate) fn simulate(setting: &Setting, replayed: Option<&[Vec<f64>]>) -> Run 
             })
             .collect()
     };
-    simulator.run(feedback, replayed)
+    run(setting, rates, outputs, feedback, replayed)
 }

@@ -3,7 +3,7 @@ use chacha20::rand_core::{Rng, SeedableRng};
 
 /// True noise of a platform, whose declared one is white and normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Noise {
+pub(super) enum Noise {
     /// As declared.
     Declared,
     /// Normal and white, but larger by this factor.
@@ -19,14 +19,14 @@ pub enum Noise {
 
 /// Six noises a sample, and three steps of walks when they are asked for.
 #[derive(Debug)]
-pub(crate) struct Source {
+pub(super) struct Source {
     generator: ChaCha12Rng,
     noise: Noise,
     before: [f64; 6],
 }
 
 impl Source {
-    pub(crate) fn new(seed: u64, stream: u64, noise: Noise) -> Self {
+    pub(super) fn new(seed: u64, stream: u64, noise: Noise) -> Self {
         let mut generator = ChaCha12Rng::seed_from_u64(seed);
         generator.set_stream(stream);
         Self {
@@ -47,7 +47,7 @@ impl Source {
         [radius * cosine, radius * sine]
     }
 
-    pub(crate) fn normals<const N: usize>(&mut self) -> [f64; N] {
+    pub(super) fn normals<const N: usize>(&mut self) -> [f64; N] {
         let mut normals = [0.0; N];
         for pair in normals.chunks_mut(2) {
             let two = self.two_normals();
@@ -57,7 +57,7 @@ impl Source {
     }
 
     /// Noise of three gyros and three accelerometers, in units of the declared sigma.
-    pub(crate) fn sample(&mut self) -> [f64; 6] {
+    pub(super) fn sample(&mut self) -> [f64; 6] {
         let mut normals: [f64; 6] = self.normals();
         match self.noise {
             Noise::Declared => {}
@@ -71,10 +71,10 @@ impl Source {
             }
             Noise::Student4 | Noise::Student4Both => {
                 let first = if self.noise == Noise::Student4 { 3 } else { 0 };
-                for i in first..6 {
+                for normal in &mut normals[first..] {
                     // χ² with four degrees of freedom; the variance of the quotient is 2.
                     let chi_square = -2.0 * (self.uniform() * self.uniform()).ln();
-                    normals[i] *= (2.0 / chi_square).sqrt();
+                    *normal *= (2.0 / chi_square).sqrt();
                 }
             }
         }

@@ -6,17 +6,14 @@ use gyrocal::{ControllerError, FilterSettings, InitialAttitude, Limits, Site};
 use gyrocal_truth::Population;
 use gyrocal_watch::{Jumps, Settings, Signatures, least_of_set};
 
-use crate::lane::{Lane, Sigmas};
-use crate::sizes::{COLUMNS, EFFECTS, JUMPS, ONSETS, STATES};
+use super::lane::Lane;
+use super::{COLUMNS, EFFECTS, INTERVAL_S, JUMPS, ONSETS, STATES};
 
 const HALF: usize = STATES * (STATES + 1) / 2;
 const CALENDAR: Calendar = Calendar::of_slots(ONSETS);
-const INTERVAL_S: f64 = 60.0;
-const DRIFT_NOISE: f64 = 0.002;
-const ACCEL_NOISE_G: f64 = 1e-5;
 
 /// A platform with its filter, and the signatures of its watch.
-pub struct Platform {
+pub(super) struct Platform {
     forces: Vec<[f64; 3]>,
     filter: WatchedFilter<f64, 1, COLUMNS>,
     signatures: Signatures<f64, STATES, COLUMNS, EFFECTS, ONSETS, HALF>,
@@ -31,10 +28,7 @@ static ONE_EFFECT: [WatchedEffect; 1] = [EFFECTS_BY_DEFAULT[0]];
 impl Platform {
     /// The platform of a number in the usual population, over some steps of a minute, with a declared
     /// walk of its gyros.
-    ///
-    /// # Errors
-    /// If the filter does not start.
-    pub fn new(
+    pub(super) fn new(
         population: u64,
         number: u64,
         steps: usize,
@@ -81,10 +75,7 @@ impl Platform {
     }
 
     /// Runs all lanes over the record; `done` ends it early. Lanes keep their first alarm.
-    ///
-    /// # Errors
-    /// If the filter fails.
-    pub fn run(
+    pub(super) fn run(
         mut self,
         lanes: &mut [Lane],
         mut done: impl FnMut(usize, &[Lane]) -> bool,
@@ -94,15 +85,10 @@ impl Platform {
         for lane in lanes.iter_mut() {
             lane.start(&prior);
         }
-        let sigmas = Sigmas {
-            drift: DRIFT_NOISE,
-            accel: ACCEL_NOISE_G,
-            walk: (INTERVAL_S / 3600.0).sqrt(),
-        };
         self.filter.update(&self.forces[0])?;
         let first = *self.filter.linearised();
         for lane in lanes.iter_mut() {
-            lane.correct(&first, &sigmas);
+            lane.correct(&first);
         }
         let courses = self.courses();
         self.signatures.reset();
@@ -126,7 +112,7 @@ impl Platform {
                 0.5 * (self.forces[row - 1][axis] + self.forces[row][axis])
             });
             for lane in lanes.iter_mut() {
-                let innovation = lane.step(row, &at, &force, &sigmas);
+                let innovation = lane.step(row, &at, &force);
                 lane.scores.add(&whitened, &innovation);
                 lane.jump_scores.add(&shown, &innovation);
             }
@@ -180,11 +166,13 @@ impl Platform {
                 continue;
             };
             for lane in lanes.iter_mut() {
-                let scores = lane.jump_scores.scores(slot);
-                for jump in 0..3 {
-                    let precision = self.settings.jump_precision[jump];
-                    let value = Evidence { precision }.value(scores[jump], cell.information[jump]);
-                    lane.sums[1] += value / 3.0;
+                let scores = lane
+                    .jump_scores
+                    .scores(slot)
+                    .into_iter()
+                    .zip(cell.information);
+                for ((score, information), precision) in scores.zip(self.settings.jump_precision) {
+                    lane.sums[1] += Evidence { precision }.value(score, information) / 3.0;
                 }
             }
         }

@@ -1,5 +1,7 @@
 //! What is simulated.
 
+use super::{Run, Stream, cart_pole, duffing, quadrotor, servo, tanks};
+
 /// An example plant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
@@ -24,6 +26,18 @@ impl Kind {
         Self::CartPole,
         Self::Quadrotor,
     ];
+
+    /// Facts about it.
+    #[must_use]
+    pub fn facts(self) -> &'static Facts {
+        match self {
+            Self::Duffing => &duffing::FACTS,
+            Self::Tanks => &tanks::FACTS,
+            Self::Servo => &servo::FACTS,
+            Self::CartPole => &cart_pole::FACTS,
+            Self::Quadrotor => &quadrotor::FACTS,
+        }
+    }
 }
 
 /// Facts about a plant.
@@ -43,6 +57,11 @@ pub struct Facts {
     pub sigmas: &'static [f64],
     /// Effects that may be hidden, by the ids that a diagnosis should find, with a size to begin with.
     pub effects: &'static [(&'static str, f64)],
+    /// Time between rows, s.
+    pub step_s: f64,
+    /// Inputs between rows go in a straight line; they are held otherwise.
+    pub interpolate: bool,
+    pub(super) simulate: fn(&Setting, Option<&[Vec<f64>]>) -> Run,
 }
 
 /// One record to be simulated.
@@ -67,21 +86,43 @@ pub struct Setting {
 }
 
 impl Setting {
+    /// A plant of a population, without a hidden effect.
+    #[must_use]
+    pub fn random(kind: Kind, seed: u64, rows: usize) -> Self {
+        let facts = kind.facts();
+        let mut random = Stream::new(seed, 0);
+        let parameters = facts.parameters.iter();
+        let initial = facts.mean.iter().zip(facts.initial);
+        let spread = facts.spread;
+        Self {
+            kind,
+            parameters: parameters
+                .map(|value| value * random.log_between(1.0 / spread, spread))
+                .collect(),
+            initial: initial
+                .map(|(mean, sigma)| mean + sigma * random.normal())
+                .collect(),
+            hidden: ("", 0.0),
+            onset: random.between(0.2, 0.8),
+            noise: 1.0,
+            rows,
+            seed,
+        }
+    }
+
     /// Size of an effect in this record.
-    pub(crate) fn size(&self, effect: &str) -> f64 {
-        if self.hidden.0 == effect {
-            self.hidden.1
-        } else {
-            0.0
+    pub(super) fn size(&self, effect: &str) -> f64 {
+        match self.hidden {
+            (hidden, size) if hidden == effect => size,
+            _ => 0.0,
         }
     }
 
     /// Size of a step at a share of the record.
-    pub(crate) fn step(&self, effect: &str, share: f64) -> f64 {
-        if share >= self.onset {
-            self.size(effect)
-        } else {
-            0.0
+    pub(super) fn step(&self, effect: &str, share: f64) -> f64 {
+        match share >= self.onset {
+            true => self.size(effect),
+            false => 0.0,
         }
     }
 }

@@ -1,11 +1,10 @@
 //! A cart on a rail with a hanging pole; a force under feedback of the place of the cart.
 
-use crate::random::Stream;
-use crate::run::{Moment, Multisine, Run, Simulator};
-use crate::setting::{Facts, Setting};
+use super::run::{Moment, Multisine, run};
+use super::{Facts, Run, Setting, Stream};
 
 /// Facts: friction of the cart over its mass, of the pole over its inertia, gain of the drive.
-pub(crate) const FACTS: Facts = Facts {
+pub(super) const FACTS: Facts = Facts {
     name: "cart_pole_diagnosed",
     parameters: &[1.0, 0.15, 1.0],
     spread: 1.25,
@@ -22,10 +21,10 @@ pub(crate) const FACTS: Facts = Facts {
         ("b.step", 0.1),
         ("g.step", -0.05),
     ],
+    step_s: 0.02,
+    interpolate: false,
+    simulate,
 };
-
-/// Time between rows, s.
-const STEP_S: f64 = 0.02;
 
 /// Masses, kg.
 const CART: f64 = 1.0;
@@ -37,7 +36,7 @@ const LENGTH: f64 = 0.5;
 /// Gravity, m/s².
 const GRAVITY: f64 = 9.81;
 
-pub(crate) fn simulate(setting: &Setting, replayed: Option<&[Vec<f64>]>) -> Run {
+fn simulate(setting: &Setting, replayed: Option<&[Vec<f64>]>) -> Run {
     let [friction, pole, gain] = core::array::from_fn(|index| setting.parameters[index]);
     let reference = Multisine::new(&mut Stream::new(setting.seed, 1), 2.0, [0.2, 2.0]);
     let size = |effect| setting.size(effect);
@@ -65,14 +64,6 @@ pub(crate) fn simulate(setting: &Setting, replayed: Option<&[Vec<f64>]>) -> Run 
         ]
     };
     let outputs = |at: &Moment<'_, 4>| vec![at.state[0], at.state[1] + size("theta.bias")];
-    let simulator = Simulator {
-        setting,
-        step_s: STEP_S,
-        interpolate: false,
-        play: 0.0,
-        rates: &rates,
-        outputs: &outputs,
-    };
     let feedback = |time_s: f64, readings: &[f64]| vec![reference.at(time_s) - 4.0 * readings[0]];
-    simulator.run(feedback, replayed)
+    run(setting, rates, outputs, feedback, replayed)
 }

@@ -1,11 +1,10 @@
 //! An axis with a motor and an encoder that follows a reference under feedback.
 
-use crate::random::Stream;
-use crate::run::{Moment, Multisine, Run, Simulator};
-use crate::setting::{Facts, Setting};
+use super::run::{Moment, Multisine, run};
+use super::{Facts, Run, Setting, Stream};
 
 /// Facts: gain of the motor and viscous friction over inertia.
-pub(crate) const FACTS: Facts = Facts {
+pub(super) const FACTS: Facts = Facts {
     name: "servo",
     parameters: &[30.0, 4.0],
     spread: 1.25,
@@ -23,15 +22,15 @@ pub(crate) const FACTS: Facts = Facts {
         ("b.step", 0.5),
         ("drive.play", 0.02),
     ],
+    step_s: 0.02,
+    interpolate: false,
+    simulate,
 };
-
-/// Time between rows, s.
-const STEP_S: f64 = 0.02;
 
 /// Width of the change of sign of dry friction, rad/s.
 const STICTION: f64 = 0.02;
 
-pub(crate) fn simulate(setting: &Setting, replayed: Option<&[Vec<f64>]>) -> Run {
+fn simulate(setting: &Setting, replayed: Option<&[Vec<f64>]>) -> Run {
     let [gain, viscous] = [0, 1].map(|index| setting.parameters[index]);
     let reference = Multisine::new(&mut Stream::new(setting.seed, 1), 0.8, [0.1, 1.5]);
     let size = |effect| setting.size(effect);
@@ -51,14 +50,6 @@ pub(crate) fn simulate(setting: &Setting, replayed: Option<&[Vec<f64>]>) -> Run 
         let lag_s = size("y.lag");
         vec![angle - lag_s * rate + 0.5 * lag_s * lag_s * rates(at)[1]]
     };
-    let simulator = Simulator {
-        setting,
-        step_s: STEP_S,
-        interpolate: false,
-        play: size("drive.play"),
-        rates: &rates,
-        outputs: &outputs,
-    };
     let feedback = |time_s: f64, readings: &[f64]| vec![2.0 * (reference.at(time_s) - readings[0])];
-    simulator.run(feedback, replayed)
+    run(setting, rates, outputs, feedback, replayed)
 }
