@@ -102,15 +102,18 @@ pub fn draw_shape(effect: &Effect, scenario: &Scenario, random: &mut Draw) -> Op
 /// # Errors
 /// As [`FittedPlatform::nominal`].
 pub fn nominal_fit(simulation: &Simulation) -> Result<FittedPlatform<'_>, EvaluationError> {
+    fit(simulation, &NoiseModel::default())
+}
+
+fn fit<'r>(
+    simulation: &'r Simulation,
+    noise: &NoiseModel,
+) -> Result<FittedPlatform<'r>, EvaluationError> {
     let run = Run {
         record: &simulation.record,
         bench: &simulation.bench,
     };
-    Ok(FittedPlatform::nominal(
-        &run,
-        &Options::default(),
-        &NoiseModel::default(),
-    )?)
+    Ok(FittedPlatform::nominal(&run, &Options::default(), noise)?)
 }
 
 /// Draws sizes of effects, in a random direction and each of `strength` sigmas of its own bound: with
@@ -132,8 +135,8 @@ pub fn inject(
     inject_into(&clean, &fitted, effects, strength, largest_cosine, random)
 }
 
-/// Injects one randomly drawn effect of `strength` sigmas of its own bound into a scenario; returns
-/// scenario and effect.
+/// Injects one randomly drawn effect of `strength` sigmas of its own bound into a scenario, beside what is hidden in
+/// it; returns scenario and effect.
 ///
 /// # Errors
 /// As [`inject`], and [`EvaluationError::NotInjectable`] if the record shows none of those drawn.
@@ -143,24 +146,33 @@ pub fn inject_any(
     random: &mut Draw,
 ) -> Result<(Scenario, InjectedEffect), EvaluationError> {
     let effects = testable_effects(&scenario);
+    inject_one_of(&effects, scenario, &NoiseModel::default(), strength, random)
+}
+
+/// As [`inject_any`], of these effects, with their strength in this noise.
+///
+/// # Errors
+/// As [`inject_any`].
+pub fn inject_one_of(
+    effects: &[&'static Effect],
+    mut scenario: Scenario,
+    noise: &NoiseModel,
+    strength: f64,
+    random: &mut Draw,
+) -> Result<(Scenario, InjectedEffect), EvaluationError> {
     let clean = simulate(&scenario)?;
-    let fitted = nominal_fit(&clean)?;
-    for _ in 0..MAX_DRAWS {
-        let effect = *random.one_of(&effects);
+    let fitted = fit(&clean, noise)?;
+    let tried = if effects.is_empty() { 0 } else { MAX_DRAWS };
+    for _ in 0..tried {
+        let effect = *random.one_of(effects);
         let with_shape = [(effect, draw_shape(effect, &scenario, random))];
         let injected = inject_into(&clean, &fitted, &with_shape, strength, 1.0, random)?;
         if let Some(only) = injected.and_then(|injected| injected.into_iter().next()) {
-            let scenario = Scenario {
-                hidden: vec![only.to_hidden()?],
-                ..scenario
-            };
+            scenario.hidden.push(only.to_hidden()?);
             return Ok((scenario, only));
         }
     }
-    Err(EvaluationError::NotInjectable {
-        tried: MAX_DRAWS,
-        strength,
-    })
+    Err(EvaluationError::NotInjectable { tried, strength })
 }
 
 /// As [`inject`], for a record without the effects that is simulated and fitted already.

@@ -108,7 +108,8 @@ pub use comparison::{ComparisonRow, OWN_METHOD, comparison};
 pub use effect_family::{FamilyRow, families};
 pub use error::EvaluationError;
 pub use injection::{
-    InjectedEffect, draw_shape, inject, inject_any, inject_into, nominal_fit, testable_effects,
+    InjectedEffect, draw_shape, inject, inject_any, inject_into, inject_one_of, nominal_fit,
+    testable_effects,
 };
 pub use monte_carlo_report::MonteCarloReport;
 pub use oracle::sets_without_walks;

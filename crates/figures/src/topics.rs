@@ -125,39 +125,47 @@ pub(crate) const TOPICS: [Topic; 8] = [
                 "Gain of extended models: in cross-validation, in the coefficients, on a second record.",
                 |to| gain::figures(to.is_small()),
             ),
-            diagnosed("setup", "Gross errors of the set-up.", |to| {
-                truth::setup::figures(to.is_small())
-            }),
-            diagnosed("hostile", "Work on records that no model fits.", |to| {
-                truth::hostile::figures(to.is_small())
-            }),
-            diagnosed("shapes", "Onsets and time constants.", |to| {
-                truth::shapes::figures(Extent::of(to))
-            }),
-            diagnosed(
+            hidden(
+                "setup",
+                "Gross errors of the set-up.",
+                truth::setup::figures,
+            ),
+            hidden(
+                "hostile",
+                "Work on records that no model fits.",
+                truth::hostile::figures,
+            ),
+            hidden(
+                "shapes",
+                "Onsets and time constants.",
+                truth::shapes::figures,
+            ),
+            hidden(
                 "causes",
                 "One cause of the catalogue in noise that is misdeclared in half of the records.",
-                |to| truth::causes::figures(Extent::of(to)),
+                truth::causes::figures,
             ),
-            diagnosed("walks", "Random walks of the gyros.", |to| {
-                truth::noise::of_walks(to)
-            }),
-            diagnosed("flicker", "Flicker of the gyros.", |to| {
-                truth::noise::of_flicker(to)
-            }),
-            diagnosed(
+            hidden(
+                "walks",
+                "Random walks of the gyros.",
+                truth::noise::of_walks,
+            ),
+            hidden("flicker", "Flicker of the gyros.", truth::noise::of_flicker),
+            hidden(
                 "clean",
                 "Noise other than declared, without a cause.",
                 truth::noise::of_clean,
             ),
-            diagnosed(
+            hidden(
                 "together",
                 "A cause of the catalogue beside random walks.",
-                |to| truth::together::figures(Extent::of(to)),
+                truth::together::figures,
             ),
-            diagnosed("outside", "Causes outside of the catalogue.", |to| {
-                truth::outside::figures(Extent::of(to))
-            }),
+            hidden(
+                "outside",
+                "Causes outside of the catalogue.",
+                truth::outside::figures,
+            ),
             part(
                 "catalogue",
                 "The catalogue of effects: docs/catalogue.md and a picture of each signature.",
@@ -330,4 +338,14 @@ const fn diagnosed(
     figures: fn(&Context) -> Result<Vec<Figure>, Error>,
 ) -> Part {
     part(name, about, of(DIAGNOSIS, &["crates/figures/src"]), figures)
+}
+
+/// A part that measures diagnoses of records whose noise, set-up or causes are other than declared.
+const fn hidden(
+    name: &'static str,
+    about: &'static str,
+    figures: fn(&Context) -> Result<Vec<Figure>, Error>,
+) -> Part {
+    let files = &["crates/figures/src/truth.rs", "crates/figures/src/truth"];
+    part(name, about, of(DIAGNOSIS, files), figures)
 }

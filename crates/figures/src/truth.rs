@@ -1,8 +1,9 @@
 //! Truth of the diagnosis outside of the population that its constants were tuned on.
 
 pub(crate) mod causes;
-mod coverage;
+mod drawn;
 pub(crate) mod hostile;
+mod judged;
 pub(crate) mod noise;
 pub(crate) mod outside;
 pub(crate) mod setup;
@@ -39,13 +40,4 @@ impl Extent {
             self.most.map_or(full, |most| most.min(full))
         }
     }
-}
-
-/// Sampling intervals of the records of a cell in turn, s: those of means of one to four minutes, which
-/// tell as much of slow effects as raw samples.
-const INTERVALS_S: [f64; 3] = [60.0, 120.0, 240.0];
-
-/// Sampling interval of the record of a seed, s.
-fn interval_s(seed: u64) -> f64 {
-    INTERVALS_S[(seed % INTERVALS_S.len() as u64) as usize]
 }

@@ -23,6 +23,25 @@ pub(crate) struct Population<'a, R> {
     pub(crate) job: Box<dyn Fn(u64) -> Result<R, Error> + Sync + 'a>,
 }
 
+impl<'a, R> Population<'a, R> {
+    /// A population of a first seed and a number of records: of the full and of the small version.
+    pub(crate) fn new(
+        name: impl Into<String>,
+        [first, full, small]: [u64; 3],
+        sources: Sources,
+        job: impl Fn(u64) -> Result<R, Error> + Sync + 'a,
+    ) -> Self {
+        Self {
+            name: name.into(),
+            first,
+            full,
+            small,
+            sources,
+            job: Box::new(job),
+        }
+    }
+}
+
 /// What can be kept of a record.
 pub(crate) trait Kept: Serialize + DeserializeOwned + Send + Sync + 'static {}
 impl<R: Serialize + DeserializeOwned + Send + Sync + 'static> Kept for R {}

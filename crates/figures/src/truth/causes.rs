@@ -1,40 +1,52 @@
 //! One cause of the catalogue in noise that is misdeclared in half of the records: detection, sets,
 //! intervals, and the coefficients with the cause in the model.
 
-mod record;
-
+use gyrocal::Effect;
 use gyrocal::effect::EffectKind;
-use gyrocal::{EFFECTS, Effect};
+use gyrocal_calibration::{FittedPlatform, Options, PLATFORM, rows};
+use gyrocal_diagnosis::Diagnosis;
 use gyrocal_diagnosis::error_budget::CONFIDENCE_SET_COVERAGE;
-use gyrocal_statistics::{Judgement, Proportion};
-use record::{Caused, record};
-pub(super) use record::{covered, holds, plain};
+use gyrocal_diagnosis::set_coverage::SET_COVERAGE;
+use gyrocal_evaluation::{
+    InjectedEffect, effect_of, inject_one_of, same_or_equivalent, sets_without_walks,
+    testable_effects,
+};
+use gyrocal_hypothesis::{FittedModel, HypothesisSet, ModelExtension};
+use gyrocal_statistics::deviates::Draw;
+use gyrocal_statistics::{NORMAL_97_5, median};
+use gyrocal_truth::{Simulation, Temperature, simulate};
+use serde::{Deserialize, Serialize};
 
-use super::Extent;
-use super::coverage::of_coefficients;
+use super::drawn::{self, noisy};
+use super::judged::{self, coefficient_rows, coefficients, diagnosed, holds, may_walk, run};
 use crate::error::Error;
 use crate::figure::Figure;
-use crate::resumable;
+use crate::harness::sources::Sources;
+use crate::harness::{Context, Population, Row};
+use crate::topics::{DIAGNOSIS, of};
 
-/// Fewer records than these are judged by an interval.
-const FEW: usize = 100;
+use Causes::{All, Of, Slow};
+use EffectKind::{Exponential, InitialState, Periodic, Ramp, Regressor, StateJump, Step};
+
+/// What can move the records.
+const SOURCES: Sources = of(DIAGNOSIS, &[file!(), drawn::FILE, judged::FILE]);
+
+/// Purpose of the stream of draws.
+const CAUSES: u64 = 47;
+
+/// Reason of the coverage of sets.
+const SETS: &str = "the sets are of 95 %";
 
 /// A population.
 struct Cell {
-    name: &'static str,
-    strength: f64,
-    /// The causes of which one is hidden.
+    causes: &'static str,
     of: Causes,
-    /// Whether detection and sets are figures of it.
-    tells_sets: bool,
-    /// Least share of sets without a noise process: with diurnal and g terms, with warm-ups.
-    least_alone: [f64; 2],
-    first_seed: u64,
-    records: u64,
-    small: u64,
+    strength: f64,
+    /// First seed, and number of records: of the full and of the small version.
+    seeds: [u64; 3],
 }
 
-/// Causes of a population.
+/// The causes of which one is hidden.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Causes {
     /// All of the catalogue.
@@ -45,331 +57,260 @@ enum Causes {
     Of(EffectKind),
 }
 
-const CELLS: [Cell; 4] = [
-    Cell {
-        name: "d = 8",
-        strength: 8.0,
-        of: Causes::All,
-        tells_sets: true,
-        least_alone: [0.85, 0.55],
-        first_seed: 801_000,
-        records: 1000,
-        small: 4,
-    },
-    Cell {
-        name: "d = 12",
-        strength: 12.0,
-        of: Causes::All,
-        least_alone: [0.97, 0.88],
-        first_seed: 811_000,
-        records: 600,
-        ..FURTHER
-    },
-    Cell {
-        name: "slow causes, d = 5",
-        strength: 5.0,
-        of: Causes::Slow,
-        first_seed: 821_000,
-        ..FURTHER
-    },
-    Cell {
-        name: "slow causes, d = 6",
-        strength: 6.0,
-        of: Causes::Slow,
-        first_seed: 831_000,
-        ..FURTHER
-    },
+const CELLS: [Cell; 12] = [
+    cell("", All, 8.0, [801_000, 1000, 4]),
+    cell("", All, 12.0, [811_000, 600, 0]),
+    cell("slow causes, ", Slow, 5.0, [821_000, 300, 0]),
+    cell("slow causes, ", Slow, 6.0, [831_000, 300, 0]),
+    of_kind("warm-ups, ", Exponential, 8.0, 841_000),
+    of_kind("warm-ups, ", Exponential, 12.0, 851_000),
+    of_kind("steps, ", Step, 8.0, 861_000),
+    of_kind("ramps, ", Ramp, 8.0, 862_000),
+    of_kind("periodic causes, ", Periodic, 8.0, 863_000),
+    of_kind("causes of a logged quantity, ", Regressor, 8.0, 864_000),
+    of_kind("jumps of the attitude, ", StateJump, 8.0, 865_000),
+    of_kind("wrong first attitudes, ", InitialState, 8.0, 866_000),
 ];
 
-/// A further population, of the full version only.
-const FURTHER: Cell = Cell {
-    name: "",
-    strength: 8.0,
-    of: Causes::All,
-    tells_sets: false,
-    least_alone: [0.0, 0.0],
-    first_seed: 0,
-    records: 300,
-    small: 0,
-};
+const fn cell(causes: &'static str, of: Causes, strength: f64, seeds: [u64; 3]) -> Cell {
+    Cell {
+        causes,
+        of,
+        strength,
+        seeds,
+    }
+}
 
-/// Populations of one kind of causes, of which the coverage of sets is measured.
-const KINDS: [Cell; 8] = [
-    Cell {
-        name: "warm-ups, d = 8",
-        of: Causes::Of(EffectKind::Exponential),
-        least_alone: [0.0, 0.55],
-        first_seed: 841_000,
-        ..FURTHER
-    },
-    Cell {
-        name: "warm-ups, d = 12",
-        strength: 12.0,
-        of: Causes::Of(EffectKind::Exponential),
-        least_alone: [0.0, 0.88],
-        first_seed: 851_000,
-        ..FURTHER
-    },
-    Cell {
-        name: "steps, d = 8",
-        of: Causes::Of(EffectKind::Step),
-        first_seed: 861_000,
-        ..FURTHER
-    },
-    Cell {
-        name: "ramps, d = 8",
-        of: Causes::Of(EffectKind::Ramp),
-        first_seed: 862_000,
-        ..FURTHER
-    },
-    Cell {
-        name: "periodic causes, d = 8",
-        of: Causes::Of(EffectKind::Periodic),
-        first_seed: 863_000,
-        ..FURTHER
-    },
-    Cell {
-        name: "causes of a logged quantity, d = 8",
-        of: Causes::Of(EffectKind::Regressor),
-        first_seed: 864_000,
-        ..FURTHER
-    },
-    Cell {
-        name: "jumps of the attitude, d = 8",
-        of: Causes::Of(EffectKind::StateJump),
-        first_seed: 865_000,
-        ..FURTHER
-    },
-    Cell {
-        name: "wrong first attitudes, d = 8",
-        of: Causes::Of(EffectKind::InitialState),
-        first_seed: 866_000,
-        ..FURTHER
-    },
-];
+const fn of_kind(causes: &'static str, kind: EffectKind, strength: f64, first: u64) -> Cell {
+    cell(causes, Of(kind), strength, [first, 300, 0])
+}
 
-pub(crate) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
-    let small = extent.small;
+/// Result for one record.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Caused {
+    effect: String,
+    detected: bool,
+    /// Whether the set of a finding holds the cause; and no noise process.
+    in_set: bool,
+    alone: bool,
+    set_size: Option<usize>,
+    spurious: bool,
+    /// The same of a search that knows that no rate walks.
+    oracle_in_set: bool,
+    oracle_set_size: Option<usize>,
+    /// Whether the intervals of the coefficients hold the true ones: over the set, and of the first
+    /// member.
+    over_set: Vec<bool>,
+    first: Vec<bool>,
+    /// Width of the intervals over those of the true model.
+    widths: Vec<f64>,
+}
+
+impl Caused {
+    fn is_of(&self, kind: EffectKind) -> bool {
+        effect_of(&self.effect).is_some_and(|effect| effect.kind == kind)
+    }
+
+    /// Of effects that a random walk stands for least, whether the set is without one.
+    fn quick_alone(&self) -> Option<bool> {
+        // Constants of a gyro that the search tests are the terms of specific force.
+        let of_gyro = effect_of(&self.effect).is_some_and(|effect| effect.rate().is_some());
+        let is_quick = self.is_of(Periodic) || (self.is_of(EffectKind::Constant) && of_gyro);
+        is_quick.then_some(self.alone)
+    }
+}
+
+pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
     let mut figures = Vec::new();
-    let cells = CELLS.iter().chain(&KINDS);
-    for cell in cells.filter(|cell| cell.small > 0 || !small) {
-        let count = extent.records(cell.records, cell.small);
-        let seeds = cell.first_seed..cell.first_seed + count;
-        let campaign = resumable::campaign("truth", cell.name, seeds.clone(), small)?;
-        let outcome = campaign.run(|seed| record(cell, seed), |_| ())?;
-        let records: Vec<Caused> = outcome.successes().map(|(_, one)| one.clone()).collect();
-        figures.extend(cell_figures(&Told {
-            cell,
-            records: &records,
-            small,
-            seeds: &format!("{seeds:?}"),
-        }));
+    for cell in &CELLS {
+        let name = cell.named("records");
+        let job = |seed| record(cell, seed);
+        let population = Population::new(name, cell.seeds, SOURCES, job);
+        figures.extend(context.measure(&population, &cell.rows())?);
     }
     Ok(figures)
 }
 
-/// The records of a cell, to be told as figures.
-struct Told<'r> {
-    cell: &'r Cell,
-    records: &'r [Caused],
-    small: bool,
-    seeds: &'r str,
-}
+type Rows = Vec<Row<'static, Caused>>;
 
-impl Told<'_> {
-    fn share(&self, what: &str, least: f64, of: impl Iterator<Item = bool>) -> Figure {
-        let all: Vec<bool> = of.collect();
-        let count = all.len();
-        let share = Proportion::of(all);
-        let name = format!("{}: {what}", self.cell.name);
-        let mut figure = Figure::within(&name, [least, 1.0], share.share()).of_share(share);
-        if self.small || count < FEW {
-            figure = figure.judged(share.at_least(least));
-        }
-        figure.over(count, self.seeds)
+impl Cell {
+    /// Name of a row.
+    fn named(&self, what: &str) -> String {
+        format!("{}d = {}: {what}", self.causes, self.strength)
     }
 
-    fn ratio(&self, what: &str, bounds: [f64; 2], measured: f64) -> Figure {
-        let name = format!("{}: {what}", self.cell.name);
-        let mut figure = Figure::within(&name, bounds, measured);
-        if self.small {
-            figure = figure.judged(Judgement::TooFew);
-        }
-        figure.over(self.records.len(), self.seeds)
+    fn share(&self, what: &str, of: fn(&Caused) -> bool) -> Row<'static, Caused> {
+        Row::share(self.named(what), move |one| Some(of(one)))
     }
 
-    fn note(&self, what: &str, of: impl Iterator<Item = bool>) -> Figure {
-        let name = format!("{}: {what}", self.cell.name);
-        let measured = format!("{:.3}", Proportion::of(of).share());
-        Figure::note(&name, measured).over(self.records.len(), self.seeds)
+    /// Coverage of the set of causes of a kind, where something was found.
+    fn coverage(&self, what: &str, kind: EffectKind) -> Row<'static, Caused> {
+        Row::share(self.named(what), move |one: &Caused| {
+            (one.detected && one.is_of(kind)).then_some(one.in_set)
+        })
+    }
+
+    fn rows(&self) -> Rows {
+        match self.of {
+            Slow => self.power(),
+            Of(kind) => {
+                let coverage = self.coverage("coverage of the set", kind);
+                let mut rows = vec![coverage.at_least(CONFIDENCE_SET_COVERAGE, SETS)];
+                rows.extend((kind == Exponential).then(|| self.warm_ups()));
+                rows
+            }
+            All => {
+                // Coverages are stated of causes of this strength.
+                let is_stated = self.strength == 8.0;
+                let mut rows = if is_stated { self.naming() } else { Vec::new() };
+                rows.extend(self.beside_noise());
+                rows
+            }
+        }
     }
 
     /// Power for slow causes: that a set holds the cause.
-    fn power(&self) -> Vec<Figure> {
-        let of = |held: fn(&Caused) -> bool| Proportion::of(self.records.iter().map(held));
-        let [own, oracle] = [of(|one| one.in_set), of(|one| one.oracle_in_set)];
-        let power = own.share() / oracle.share().max(f64::MIN_POSITIVE);
-        let what = "power over that of a search that knows that no rate walks";
-        let over = Figure {
-            target: ">= 0.95".to_owned(),
-            ..self.ratio(what, [0.95, f64::INFINITY], power)
-        };
-        let note = |what: &str, share| {
-            Figure::note_share(&format!("{}: {what}", self.cell.name), share, self.seeds)
-        };
+    fn power(&self) -> Rows {
+        let over = self.named("power over that of a search that knows that no rate walks");
+        let both = |one: &Caused| Some([one.in_set, one.oracle_in_set].map(f64::from));
         vec![
-            over,
-            note("a set holds the cause", own),
-            note("the same of that search", oracle),
+            Row::ratio(over, both)
+                .at_least(0.95, "unknown noise hides one cause of twenty at most"),
+            self.share("a set holds the cause", |one| one.in_set),
+            self.share("the same of that search", |one| one.oracle_in_set),
         ]
     }
 
     /// Detection and sets.
-    fn naming(&self) -> Vec<Figure> {
-        let all = || self.records.iter();
-        let sizes = all().filter_map(|one| Some([one.set_size?, one.oracle_set_size?]));
-        let [own, oracle] = sizes.fold([0.0, 0.0], |[own, oracle], [one, other]| {
-            [own + one as f64, oracle + other as f64]
-        });
-        let what = "mean set size over that of a search that knows that no rate walks";
-        let mut figures = vec![
-            self.share("detected", 0.98, all().map(|one| one.detected)),
-            self.share("a set holds the cause", 0.95, all().map(|one| one.in_set)),
-            self.ratio(what, [0.0, 1.1], own / oracle.max(1.0)),
-            self.note("spurious second cause", all().map(|one| one.spurious)),
+    fn naming(&self) -> Rows {
+        let over = self.named("mean set size over that of a search that knows that no rate walks");
+        let sizes = |one: &Caused| Some([one.set_size? as f64, one.oracle_set_size? as f64]);
+        let kinds = SET_COVERAGE.iter().map(|(kind, _)| *kind);
+        let of_kind = |kind| self.coverage(&format!("coverage of the set, kind {kind:?}"), kind);
+        let mut rows = vec![
+            self.share("detected", |one| one.detected)
+                .at_least(0.98, "the threshold is three standard deviations lower"),
+            self.share("a set holds the cause", |one| one.in_set)
+                .at_least(CONFIDENCE_SET_COVERAGE, SETS),
+            Row::ratio(over, sizes).at_most(1.1, "unknown noise adds one name to ten at most"),
+            self.share("spurious second cause", |one| one.spurious),
         ];
-        figures.extend(self.coverage_by_kind());
-        figures
+        rows.extend(kinds.map(of_kind));
+        rows
     }
 
-    /// Coverage of the set, of the records in which something was found, by kind of the cause.
-    fn coverage_by_kind(&self) -> Vec<Figure> {
-        let mut kinds: Vec<(EffectKind, Vec<bool>)> = Vec::new();
-        for one in self.records.iter().filter(|one| one.detected) {
-            let Some(effect) = effect(&one.effect) else {
-                continue;
-            };
-            match kinds.iter_mut().find(|(kind, _)| *kind == effect.kind) {
-                Some((_, held)) => held.push(one.in_set),
-                None => kinds.push((effect.kind, vec![one.in_set])),
-            }
-        }
-        let row = |(kind, held): &(EffectKind, Vec<bool>)| {
-            let name = format!("{}: coverage of the set, kind {kind:?}", self.cell.name);
-            let share = Proportion::of(held.iter().copied());
-            Figure::note(&name, format!("{:.3}", share.share())).over(held.len(), self.seeds)
-        };
-        kinds.iter().map(row).collect()
+    /// Sets without a noise process, and intervals of the coefficients.
+    fn beside_noise(&self) -> Rows {
+        let least = if self.strength < 10.0 { 0.85 } else { 0.97 };
+        let quick = self.named("no noise process in the set, diurnal and g terms");
+        let reason = "no walk follows a day or the attitude for long";
+        let covered =
+            self.named("coefficients in the 95 % intervals over the sets, whatever was named");
+        let first = self.named("in those of the first member");
+        let widths = self.named("median width of these over the true model's");
+        let width = |one: &Caused| (!one.widths.is_empty()).then(|| median(&one.widths));
+        let mut rows = vec![
+            Row::share(quick, Caused::quick_alone).at_least(least, reason),
+            self.warm_ups(),
+        ];
+        rows.extend(coefficient_rows(&covered, |one: &Caused| &one.over_set));
+        rows.push(Row::each(first, |one: &Caused| one.first.clone()));
+        let reason = "what names and noise that are not known may cost";
+        rows.push(Row::median(widths, width).at_most(1.3, reason));
+        rows
     }
 
-    /// Sets without a noise process, of effects that a random walk stands for least.
-    fn alone(&self) -> [Figure; 2] {
-        // Constants of a gyro that the search tests are the terms of specific force.
-        let of_gyro = |one: &Caused| effect(&one.effect).is_some_and(|one| one.rate().is_some());
-        let is_quick = |one: &&Caused| {
-            kind(one) == Some(EffectKind::Periodic)
-                || (kind(one) == Some(EffectKind::Constant) && of_gyro(one))
-        };
-        let of_quick = self.records.iter().filter(is_quick).map(|one| one.alone);
-        let what = "no noise process in the set, diurnal and g terms";
-        let quick = self.share(what, self.cell.least_alone[0], of_quick);
-        [quick, self.alone_of_warm_ups()]
-    }
-
-    /// The same of warm-ups.
-    fn alone_of_warm_ups(&self) -> Figure {
-        let is_warm_up = |one: &&Caused| kind(one) == Some(EffectKind::Exponential);
-        let of_warm_ups = self.records.iter().filter(is_warm_up).map(|one| one.alone);
-        let what = "no noise process in the set, warm-ups";
-        self.share(what, self.cell.least_alone[1], of_warm_ups)
-    }
-
-    /// Sets of one kind of causes: their coverage where something was found, and warm-ups without a noise process.
-    fn of_kind(&self, kind: EffectKind) -> Vec<Figure> {
-        let found = self.records.iter().filter(|one| one.detected);
-        let name = format!("{}: coverage of the set", self.cell.name);
-        let covered = Proportion::of(found.map(|one| one.in_set));
-        let mut figures = vec![Figure {
-            target: format!("{CONFIDENCE_SET_COVERAGE} not excluded"),
-            // Of eight kinds none is to fail by chance.
-            holds: Some(covered.at_least(CONFIDENCE_SET_COVERAGE) != Judgement::Missed),
-            ..Figure::note_share(&name, covered, self.seeds)
-        }];
-        if kind == EffectKind::Exponential {
-            figures.push(self.alone_of_warm_ups());
-        }
-        figures
-    }
-
-    /// Intervals of the coefficients.
-    fn coefficients(&self) -> Vec<Figure> {
-        let all = || self.records.iter();
-        let covered: Vec<&[bool]> = all().map(|one| one.over_set.as_slice()).collect();
-        let first = all().flat_map(|one| one.first.iter().copied());
-        let mut widths: Vec<f64> = all().flat_map(|one| one.widths.clone()).collect();
-        widths.sort_by(f64::total_cmp);
-        let median = widths.get(widths.len() / 2).copied().unwrap_or(f64::NAN);
-        let name = format!(
-            "{}: coefficients in the 95 % intervals over the sets, whatever was named",
-            self.cell.name
-        );
-        let mut figures = of_coefficients(&name, &covered, self.seeds, self.small);
-        figures.extend([
-            self.note("in those of the first member", first),
-            self.ratio(
-                "median width of these over the true model's",
-                [0.0, 1.3],
-                median,
-            ),
-        ]);
-        figures
+    /// Sets of warm-ups without a noise process.
+    fn warm_ups(&self) -> Row<'static, Caused> {
+        let least = if self.strength < 10.0 { 0.55 } else { 0.88 };
+        let name = self.named("no noise process in the set, warm-ups");
+        let alone = |one: &Caused| one.is_of(Exponential).then_some(one.alone);
+        let reason = "a walk may stand for a slow curve; the stronger it is, the less";
+        Row::share(name, alone).at_least(least, reason)
     }
 }
 
-fn cell_figures(told: &Told<'_>) -> Vec<Figure> {
-    match told.cell.of {
-        Causes::Slow => return told.power(),
-        Causes::Of(kind) => return told.of_kind(kind),
-        Causes::All => {}
-    }
-    let mut figures = Vec::new();
-    if told.cell.tells_sets {
-        figures.extend(told.naming());
-    }
-    figures.extend(told.alone());
-    figures.extend(told.coefficients());
-    figures
+fn is_slow(effect: &Effect) -> bool {
+    effect.rate().is_some() && matches!(effect.kind, Ramp | Step | Exponential | Periodic)
 }
 
-fn kind(one: &Caused) -> Option<EffectKind> {
-    effect(&one.effect).map(|effect| effect.kind)
+/// Simulates and diagnoses the record of a seed.
+fn record(cell: &Cell, seed: u64) -> Result<Caused, Error> {
+    let (mut scenario, noise) = noisy(seed)?;
+    // Without a log there is no such cause.
+    if cell.of == Of(Regressor) {
+        scenario
+            .temperature
+            .get_or_insert_with(Temperature::default);
+    }
+    let mut effects = testable_effects(&scenario);
+    effects.retain(|effect| match cell.of {
+        All => true,
+        Slow => is_slow(effect),
+        Of(kind) => effect.kind == kind,
+    });
+    let mut random = Draw::new(seed, CAUSES);
+    let (scenario, cause) = inject_one_of(&effects, scenario, &noise, cell.strength, &mut random)?;
+    let simulation = simulate(&scenario)?;
+    let found = diagnosed(&simulation)?;
+    let id = cause.effect.id;
+    let causes: Vec<_> = found.result.causes().collect();
+    let mut holding = causes.iter().filter(|finding| holds(finding, id));
+    let oracle = sets_without_walks(&found, &simulation)?;
+    let holds_it = |set: &Vec<&str>| set.iter().any(|effect| same_or_equivalent(effect, id));
+    let stated = coefficients(&found.result, &simulation);
+    let sigmas = true_sigmas(&found, &simulation, &cause)?;
+    let widths = stated.iter().zip(sigmas);
+    Ok(Caused {
+        effect: id.to_owned(),
+        detected: !causes.is_empty(),
+        in_set: holding.clone().next().is_some(),
+        alone: holding.any(|finding| !may_walk(finding, None)),
+        set_size: causes.first().map(|first| 1 + first.alternatives.len()),
+        spurious: causes.len() > 1,
+        oracle_in_set: oracle.iter().any(holds_it),
+        oracle_set_size: oracle.first().map(Vec::len),
+        over_set: stated.iter().map(|one| one.covered).collect(),
+        first: stated.iter().map(|one| one.first).collect(),
+        widths: widths
+            .map(|(one, sigma)| one.width / (2.0 * NORMAL_97_5 * sigma))
+            .collect(),
+    })
 }
 
-fn effect(id: &str) -> Option<&'static Effect> {
-    EFFECTS.iter().find(|effect| effect.id == id)
+/// Standard deviations of the coefficients by a model with the cause.
+fn true_sigmas(
+    found: &Diagnosis<'_>,
+    simulation: &Simulation,
+    cause: &InjectedEffect,
+) -> Result<Vec<f64>, Error> {
+    let run = run(simulation);
+    let mut noise = found.noise_model.clone();
+    noise.gyro_walk_deg_per_h_per_sqrt_h = [0.0; 3];
+    let nominal = FittedPlatform::nominal(&run, &Options::default(), &noise)?;
+    let rows = rows(run.record, nominal.covariates());
+    let set = HypothesisSet::new(&PLATFORM, &rows, &[cause.effect]);
+    let mut extension = ModelExtension::default();
+    set.add_to_model(&PLATFORM, &rows, &mut extension, 0, cause.shape);
+    let variances = nominal.refitted(&extension)?.covariance().diagonal();
+    Ok(variances.iter().map(|variance| variance.sqrt()).collect())
 }
 
 #[cfg(test)]
 mod tests {
-    use gyrocal_diagnosis::set_coverage::SET_COVERAGE;
-
     use super::*;
     use crate::harness::pages;
-
-    /// The row of the page with the coverage of a kind.
-    fn row_of(kind: EffectKind) -> String {
-        let own = |cell: &&Cell| cell.of == Causes::Of(kind) && cell.name.ends_with("d = 8");
-        match KINDS.iter().find(own) {
-            Some(cell) => format!("{}: coverage of the set", cell.name),
-            None => format!("d = 8: coverage of the set, kind {kind:?}"),
-        }
-    }
 
     #[test]
     fn stated_coverages_are_those_of_the_page() {
         let page = std::fs::read_to_string(pages::path("diagnosis")).unwrap();
         for (kind, stated) in SET_COVERAGE {
-            let start = format!("| {} ", row_of(kind));
+            let own = |cell: &&Cell| cell.of == Of(kind) && cell.strength == 8.0;
+            let row = match CELLS.iter().find(own) {
+                Some(cell) => cell.named("coverage of the set"),
+                None => CELLS[0].named(&format!("coverage of the set, kind {kind:?}")),
+            };
+            let start = format!("| {row} ");
             let row = page.lines().find(|line| line.starts_with(&start));
             let measured = row.and_then(|row| row.split('|').nth(3)?.split_whitespace().next());
             let measured: f64 = measured.expect(&start).parse().unwrap();

@@ -2,36 +2,28 @@
 
 use std::time::Instant;
 
-use gyrocal_calibration::{Options, Run};
+use gyrocal_calibration::Options;
 use gyrocal_diagnosis::{DiagnoseOptions, DiagnosisError, Gate, diagnose};
-use gyrocal_evaluation::{Outcome, inject_any};
+use gyrocal_evaluation::{Statistic, inject_any};
 use gyrocal_setup::{PlatformKind, check_setup};
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_statistics::{Proportion, median};
-use gyrocal_testkit::broken_setups::{
-    BREAKAGES, Breakage, leave_angles_out, varied_record, varied_scenario,
-};
-use gyrocal_truth::{Coefficients, InitialAttitude, Scenario, Simulation, simulate};
+use gyrocal_testkit::broken_setups::{BREAKAGES, leave_angles_out, varied_record, varied_scenario};
+use gyrocal_truth::{InitialAttitude, Scenario, Simulation, simulate};
 use serde::{Deserialize, Serialize};
 
+use super::drawn::{self, coefficients};
+use super::judged::{self, run};
 use crate::error::Error;
 use crate::figure::Figure;
-use crate::resumable;
+use crate::harness::sources::Sources;
+use crate::harness::{Context, Population, Row};
+use crate::topics::of;
 
-/// First seed of the broken records, and records of each kind; of the small version.
-const BROKEN: u64 = 3_000_000;
-const OF_EACH: u64 = 20;
-const SMALL_OF_EACH: u64 = 3;
-
-/// First seed and number of the sound records; of the small version.
-const SOUND: u64 = 3_100_000;
-const SOUND_RECORDS: u64 = 1_000;
-const SMALL_SOUND_RECORDS: u64 = 60;
-
-/// First seed and number of the records whose sign of the latitude fits decide; of the small version.
-const UNDECIDED: u64 = 3_210_000;
-const UNDECIDED_RECORDS: u64 = 400;
-const SMALL_UNDECIDED_RECORDS: u64 = 16;
+const SOURCES: Sources = of(
+    &["crates/diagnosis", "crates/evaluation", "crates/testkit"],
+    &[file!(), drawn::FILE, judged::FILE],
+);
 
 /// Strength of the effects in every other sound record, in sigmas of their own bound.
 const STRENGTHS: [f64; 2] = [5.0, 100.0];
@@ -43,10 +35,14 @@ const TIMED_RUNS: usize = 9;
 const DAYS: f64 = 3.0;
 const MORE: f64 = 10.0;
 
-pub(crate) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
-    let mut figures = broken(small)?;
-    figures.extend(sound(small)?);
-    figures.extend(undecided(small)?);
+/// Largest share of false alarms, and why.
+const FALSE: f64 = 0.005;
+const FALSE_REASON: &str = "half of the level of the diagnosis, which the gate precedes";
+
+pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
+    let mut figures = broken(context)?;
+    figures.extend(sound(context)?);
+    figures.extend(undecided(context)?);
     figures.extend(time()?);
     Ok(figures)
 }
@@ -55,68 +51,59 @@ pub(crate) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Told {
     breakage: String,
-    findings: Vec<String>,
     is_right: bool,
 }
 
-fn tell(breakage: &Breakage, seed: u64) -> Told {
+/// Pairs of records, the second without angles where they may be left out, have one kind in turn.
+fn tell(seed: u64) -> Told {
+    let breakage = &BREAKAGES[(seed / 2) as usize % BREAKAGES.len()];
     let broken = breakage.record(seed);
     let found = check_setup(&broken.record, &broken.bench).findings;
     let is_named = |kind: &str| breakage.kinds.contains(&kind);
     let is_right = !found.is_empty()
         && found.iter().all(|finding| {
-            let others = finding.equivalent_kinds.iter();
-            is_named(finding.kind.as_str())
-                || others.into_iter().any(|kind| is_named(kind.as_str()))
+            let mut others = finding.equivalent_kinds.iter();
+            is_named(finding.kind.as_str()) || others.any(|kind| is_named(kind.as_str()))
         });
     Told {
         breakage: breakage.name.to_owned(),
-        findings: found.iter().map(|f| f.kind.as_str().to_owned()).collect(),
         is_right,
     }
 }
 
-fn broken(small: bool) -> Result<Vec<Figure>, Error> {
-    let each = if small { SMALL_OF_EACH } else { OF_EACH };
-    let seeds = BROKEN..BROKEN + each * BREAKAGES.len() as u64;
-    let campaign = resumable::campaign("truth", "gross errors", seeds.clone(), small)?;
-    let job = |seed: u64| {
-        let breakage = &BREAKAGES[((seed - BROKEN) / each) as usize];
-        Ok::<_, Error>(tell(breakage, seed))
+fn broken(context: &Context) -> Result<Vec<Figure>, Error> {
+    let kinds = BREAKAGES.len() as u64;
+    let seeds = [3_000_000, 20 * kinds, 2 * kinds];
+    let population = Population::new("gross errors", seeds, SOURCES, |seed| Ok(tell(seed)));
+    let named = |what: &str| format!("gross errors, {kinds} kinds: {what}");
+    let worst = |all: &[Told]| {
+        let shares = by_kind(all).map(|(_, share)| share);
+        let worst = shares.min_by(|one, other| one.share().total_cmp(&other.share()));
+        Statistic::Share(worst.unwrap_or(Proportion::of([])))
     };
-    let outcome: Outcome<Told> = campaign.run(job, |_| ())?;
-    let all: Vec<&Told> = outcome.successes().map(|(_, told)| told).collect();
-    let right = Proportion::of(all.iter().map(|told| told.is_right));
-    let mut worst = (each, "none");
-    for breakage in BREAKAGES {
-        let of_it = all.iter().filter(|told| told.breakage == breakage.name);
-        let hits = of_it.filter(|told| told.is_right).count() as u64;
-        if hits < worst.0 {
-            worst = (hits, breakage.name);
-        }
-    }
-    let name = format!("gross errors, {} kinds:", BREAKAGES.len());
-    let seeds = format!("{seeds:?}");
-    let mut over_all = Figure::within(
-        &format!("{name} right kind or class, over all"),
-        [0.98, f64::INFINITY],
-        right.share(),
-    )
-    .of_share(right);
-    if small {
-        over_all = over_all.judged(right.at_least(0.98));
-    }
-    let least = if small { 1 } else { 17 };
-    let mut worst_kind = Figure::note(
-        &format!("{name} worst kind"),
-        format!("{} of {each} ({})", worst.0, worst.1),
-    );
-    worst_kind.target = format!(">= {least} of {each}");
-    worst_kind.holds = Some(worst.0 >= least);
-    Ok(vec![
-        over_all.over(all.len(), seeds.clone()),
-        worst_kind.over(all.len(), seeds),
-    ])
+    let wrong = |all: &[Told]| {
+        let wrong = by_kind(all).filter(|(_, right)| right.hits < right.trials);
+        let words = wrong.map(|(kind, right)| format!("{kind} {}", right.trials - right.hits));
+        words.collect::<Vec<_>>().join(", ")
+    };
+    let rows = [
+        Row::share(named("right kind or class, over all"), |one: &Told| {
+            Some(one.is_right)
+        })
+        .at_least(0.98, "one of fifty is so short or still that others fit"),
+        Row::new(named("worst kind"), worst)
+            .at_least(0.85, "17 of 20 has the worst of 44 kinds of 98 %"),
+        Row::words(named("told wrong, of each kind"), wrong),
+    ];
+    context.measure(&population, &rows)
+}
+
+/// Shares that are told right, by kind.
+fn by_kind(all: &[Told]) -> impl Iterator<Item = (&'static str, Proportion)> {
+    BREAKAGES.iter().map(|kind| {
+        let own = all.iter().filter(|one| one.breakage == kind.name);
+        (kind.name, Proportion::of(own.map(|one| one.is_right)))
+    })
 }
 
 /// A sound record of a seed; every other one has an effect.
@@ -137,43 +124,23 @@ fn sound_record(seed: u64) -> Result<Simulation, Error> {
     Ok(varied_record(seed, &scenario))
 }
 
-fn sound(small: bool) -> Result<Vec<Figure>, Error> {
-    let records = if small {
-        SMALL_SOUND_RECORDS
-    } else {
-        SOUND_RECORDS
-    };
-    let seeds = SOUND..SOUND + records;
-    let campaign = resumable::campaign("truth", "sound", seeds.clone(), small)?;
-    let job = |seed: u64| Ok::<_, Error>(told(&sound_record(seed)?));
-    let outcome: Outcome<Vec<String>> = campaign.run(job, |_| ())?;
-    let alarms = Proportion::of(outcome.successes().map(|(_, kinds)| !kinds.is_empty()));
-    let mut figure = Figure::within(
-        "false alarms of the gate: sound records",
-        [f64::NEG_INFINITY, 0.005],
-        alarms.share(),
-    )
-    .of_share(alarms);
-    if small {
-        figure = figure.judged(alarms.at_most(0.005));
-    }
-    let failed = outcome.failures().count();
-    let mut figures = vec![figure.over(alarms.trials as usize, format!("{seeds:?}"))];
-    if failed > 0 {
-        figures.push(Figure::note(
-            "false alarms of the gate: records in which no effect reaches the strength",
-            failed.to_string(),
-        ));
-    }
-    Ok(figures)
+fn sound(context: &Context) -> Result<Vec<Figure>, Error> {
+    let job = |seed| Ok(told(&sound_record(seed)?));
+    let population = Population::new("sound", [3_100_000, 1000, 60], SOURCES, job);
+    let alarms = Row::share("false alarms of the gate: sound records", is_alarm);
+    context.measure(&population, &[alarms.at_most(FALSE, FALSE_REASON)])
 }
 
 /// Kinds that the gate tells, fits included.
 fn told(simulation: &Simulation) -> Vec<String> {
-    let (record, bench) = (&simulation.record, &simulation.bench);
-    let run = Run { record, bench };
-    let found = Gate::new(PlatformKind::Stabilised, &run, &Options::default());
+    let kind = PlatformKind::Stabilised;
+    let found = Gate::new(kind, &run(simulation), &Options::default());
     found.problems.into_iter().map(|one| one.kind).collect()
+}
+
+#[expect(clippy::ptr_arg, reason = "rows call it so")]
+fn is_alarm(kinds: &Vec<String>) -> Option<bool> {
+    Some(!kinds.is_empty())
 }
 
 /// A record without angles whose sign of the latitude only fits decide: at 10 to 15 degrees over a day
@@ -186,18 +153,12 @@ fn undecided_record(seed: u64) -> Result<Simulation, Error> {
     } else {
         (between([20.0, 70.0]), between([7.0, 12.0]))
     };
-    let sign = random.sign();
-    let mut three = || core::array::from_fn(|_| random.normal());
     let scenario = Scenario {
         seed,
-        latitude_deg: sign * size_deg,
+        latitude_deg: random.sign() * size_deg,
         initial: InitialAttitude::Random,
         duration_s: 3600.0 * hours,
-        coefficients: Coefficients {
-            bias_deg_per_h: three(),
-            g_deg_per_h_per_g: three(),
-            gg_deg_per_h_per_g2: three(),
-        },
+        coefficients: coefficients([1.0; 3], &mut random),
         ..Scenario::default()
     };
     let mut simulation = simulate(&scenario)?;
@@ -205,57 +166,34 @@ fn undecided_record(seed: u64) -> Result<Simulation, Error> {
     Ok(simulation)
 }
 
-fn undecided(small: bool) -> Result<Vec<Figure>, Error> {
-    let records = if small {
-        SMALL_UNDECIDED_RECORDS
-    } else {
-        UNDECIDED_RECORDS
-    };
-    let seeds = UNDECIDED..UNDECIDED + records;
-    let campaign = resumable::campaign("truth", "undecided", seeds.clone(), small)?;
+/// Every other record has the wrong sign.
+fn undecided(context: &Context) -> Result<Vec<Figure>, Error> {
     let job = |seed: u64| {
         let mut simulation = undecided_record(seed)?;
-        // Every other one has the wrong sign.
-        if seed % 2 == 1 {
+        let is_wrong = seed % 2 == 1;
+        if is_wrong {
             simulation.bench.latitude_deg *= -1.0;
         }
-        Ok::<_, Error>(told(&simulation))
+        Ok((is_wrong, told(&simulation)))
     };
-    let outcome: Outcome<Vec<String>> = campaign.run(job, |_| ())?;
-    let of = |wrong: u64| {
-        outcome
-            .successes()
-            .filter(move |(seed, _)| *seed % 2 == wrong)
-    };
-    let right = Proportion::of(of(1).map(|(_, kinds)| *kinds == ["handedness"]));
-    let alarms = Proportion::of(of(0).map(|(_, kinds)| !kinds.is_empty()));
+    let population = Population::new("undecided", [3_210_000, 400, 16], SOURCES, job);
     let name = "sign of the latitude by fits, below 15 deg or 12 h:";
-    let mut first = Figure::within(
-        &format!("{name} told"),
-        [0.95, f64::INFINITY],
-        right.share(),
-    )
-    .of_share(right);
-    let mut second = Figure::within(
-        &format!("{name} false"),
-        [f64::NEG_INFINITY, 0.005],
-        alarms.share(),
-    )
-    .of_share(alarms);
-    if small {
-        first = first.judged(right.at_least(0.95));
-        second = second.judged(alarms.at_most(0.005));
-    }
-    let seeds = format!("{seeds:?}");
-    Ok(vec![
-        first.over(right.trials as usize, seeds.clone()),
-        second.over(alarms.trials as usize, seeds),
-    ])
+    let is_told =
+        |(is_wrong, kinds): &(bool, Vec<String>)| is_wrong.then(|| kinds.iter().eq(["handedness"]));
+    let is_false = |(is_wrong, kinds): &(bool, Vec<String>)| is_alarm(kinds).filter(|_| !is_wrong);
+    let rows = [
+        Row::share(format!("{name} told"), is_told).at_least(
+            0.95,
+            "the least record that fits decide misses one of twenty",
+        ),
+        Row::share(format!("{name} false"), is_false).at_most(FALSE, FALSE_REASON),
+    ];
+    context.measure(&population, &rows)
 }
 
 fn simulated(days: f64) -> Result<Simulation, Error> {
     Ok(simulate(&Scenario {
-        seed: SOUND,
+        seed: 3_100_000,
         latitude_deg: 48.2,
         initial: InitialAttitude::Random,
         // The last row begins the next day.
@@ -264,57 +202,43 @@ fn simulated(days: f64) -> Result<Simulation, Error> {
     })?)
 }
 
-/// Median time of a job, s.
-fn timed(mut job: impl FnMut()) -> f64 {
-    let times: Vec<f64> = (0..TIMED_RUNS)
-        .map(|_| {
-            let start = Instant::now();
-            job();
-            start.elapsed().as_secs_f64()
-        })
-        .collect();
+/// Median time of a job, ms.
+fn timed_ms(mut job: impl FnMut()) -> f64 {
+    let times: [f64; TIMED_RUNS] = core::array::from_fn(|_| {
+        let start = Instant::now();
+        job();
+        1e3 * start.elapsed().as_secs_f64()
+    });
     median(&times)
 }
 
 fn time() -> Result<Vec<Figure>, Error> {
     let of_gate = |simulation: &Simulation| {
-        timed(|| {
+        timed_ms(|| {
             std::hint::black_box(check_setup(&simulation.record, &simulation.bench));
         })
     };
-    let first = simulated(DAYS)?;
-    let rows = first.record.len();
-    let (once, more) = (of_gate(&first), of_gate(&simulated(MORE * DAYS)?));
-    let mut reversed = first;
+    let mut reversed = simulated(DAYS)?;
+    let rows = reversed.record.len();
+    let (once, more) = (of_gate(&reversed), of_gate(&simulated(MORE * DAYS)?));
     reversed.bench.latitude_deg *= -1.0;
-    let mut slowest = 0.0_f64;
+    let mut without = reversed.clone();
+    leave_angles_out(&mut without.bench);
     let mut is_told = true;
-    for angles in [true, false] {
-        if !angles {
-            leave_angles_out(&mut reversed.bench);
-        }
-        slowest = slowest.max(timed(|| {
+    let slowest = [reversed, without].map(|simulation| {
+        timed_ms(|| {
             let options = DiagnoseOptions::default();
-            let found = diagnose(&reversed.record, &reversed.bench, &options);
+            let found = diagnose(&simulation.record, &simulation.bench, &options);
             is_told &= matches!(found, Err(DiagnosisError::Setup { .. }));
-        }));
-    }
+        })
+    });
     let name = |what: &str| format!("time of the gate at {rows} rows, {what}");
+    let with = name("with a refit as given and corrected");
+    let ratio = format!("time of the gate at {MORE} times the rows over {MORE} times the time");
     Ok(vec![
-        Figure::at_most(&name("without a refit"), 100.0, 1e3 * once, "ms").over(TIMED_RUNS, ""),
-        Figure::at_most(
-            &name("with a refit as given and corrected"),
-            500.0,
-            1e3 * slowest,
-            "ms",
-        )
-        .over(2 * TIMED_RUNS, ""),
+        Figure::at_most(&name("without a refit"), 100.0, once, "ms").over(TIMED_RUNS, ""),
+        Figure::at_most(&with, 500.0, slowest[0].max(slowest[1]), "ms").over(2 * TIMED_RUNS, ""),
         Figure::truth("the latitude's sign stops the diagnosis", is_told),
-        Figure::within(
-            &format!("time of the gate at {MORE} times the rows over {MORE} times the time"),
-            [0.0, 1.5],
-            more / once / MORE,
-        )
-        .over(TIMED_RUNS, ""),
+        Figure::within(&ratio, [0.0, 1.5], more / once / MORE).over(TIMED_RUNS, ""),
     ])
 }

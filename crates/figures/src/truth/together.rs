@@ -1,22 +1,21 @@
 //! One cause of the catalogue beside random walks of some gyros, the noise misdeclared in half of the
 //! records.
 
-use gyrocal_diagnosis::result::Finding;
-use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
-use gyrocal_evaluation::{EvaluationError, inject_any, scenario};
-use gyrocal_record::AXES;
-use gyrocal_statistics::Proportion;
+use gyrocal_evaluation::inject_any;
 use gyrocal_statistics::deviates::Draw;
-use gyrocal_truth::{Hidden, Scenario, simulate};
+use gyrocal_truth::{Scenario, simulate};
 use serde::{Deserialize, Serialize};
 
-use super::Extent;
-use super::causes::{covered, holds};
-use super::coverage::of_coefficients;
-use super::noise::{MISDECLARED, WALKS, false_causes};
+use super::drawn::{self, misdeclare, plain, walk};
+use super::judged::{self, coefficient_rows, coefficients, diagnosed, holds, surely_not_walks};
 use crate::error::Error;
 use crate::figure::Figure;
-use crate::resumable;
+use crate::harness::sources::Sources;
+use crate::harness::{Context, Population, Row};
+use crate::topics::{DIAGNOSIS, of};
+
+/// What can move the records.
+const SOURCES: Sources = of(DIAGNOSIS, &[file!(), drawn::FILE, judged::FILE]);
 
 /// Purpose of the stream of draws.
 const PURPOSE: u64 = 48;
@@ -26,13 +25,6 @@ const STRENGTH: [f64; 2] = [10.0, 100.0];
 
 /// Probability that a gyro walks; where none does by it, one is chosen.
 const WALKING: f64 = 0.5;
-
-const FIRST_SEED: u64 = 795_000;
-const RECORDS: u64 = 500;
-const SMALL: u64 = 3;
-
-/// Largest share of records with a cause that neither is there nor may be a walk.
-const FALSE: f64 = 0.05;
 
 /// Result for one record.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -47,84 +39,52 @@ struct Mixed {
     covered: Vec<bool>,
 }
 
-pub(crate) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
-    let seeds = FIRST_SEED..FIRST_SEED + extent.records(RECORDS, SMALL);
-    let campaign = resumable::campaign("truth", "together", seeds.clone(), extent.small)?;
-    let outcome = campaign.run(record, |_| ())?;
-    let records: Vec<&Mixed> = outcome.successes().map(|(_, record)| record).collect();
-    let seeds = format!("{seeds:?}");
-    let wrong = Proportion::of(records.iter().map(|one| !one.wrong.is_empty()));
-    let bound = wrong.upper_bound(0.95);
-    let name = "a cause beside walks: one named that is not there, without a walk of its gyro";
-    let mut first = Figure::within(name, [0.0, FALSE], bound).of_share(wrong);
-    first.target = format!("<= {FALSE} (upper 95 % bound)");
-    first.measured = format!("{:.3}, bound {bound:.3}", wrong.share());
-    let covered: Vec<&[bool]> = records.iter().map(|one| one.covered.as_slice()).collect();
-    let name = "a cause beside walks: coefficients in their 95 % intervals";
-    if extent.small {
-        first = first.judged(wrong.at_most(FALSE));
-    }
+pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
+    let population = Population::new("together", [795_000, 500, 3], SOURCES, record);
+    let wrong = "a cause beside walks: one named that is not there, without a walk of its gyro";
+    let level =
+        "the limit of walks alone, and two more for a second cause: 16 of 500 within the bound";
     let held = |walks_itself: bool| {
-        let of = records
-            .iter()
-            .filter(|one| one.walks_itself == walks_itself);
-        let held: Vec<bool> = of.map(|one| one.in_set).collect();
-        let count = held.len();
-        let name = format!(
-            "a cause beside walks: a set holds it, its own gyro {}",
-            if walks_itself {
-                "walking"
-            } else {
-                "not walking"
-            }
-        );
-        Figure::note(&name, format!("{:.3}", Proportion::of(held).share())).over(count, &*seeds)
+        move |one: &Mixed| (one.walks_itself == walks_itself).then_some(one.in_set)
     };
-    let mut figures = vec![first.over(records.len(), &*seeds), held(false), held(true)];
-    figures.extend(of_coefficients(name, &covered, &seeds, extent.small));
-    Ok(figures)
+    let [still, walking] = ["not walking", "walking"]
+        .map(|gyro| format!("a cause beside walks: a set holds it, its own gyro {gyro}"));
+    let mut rows = vec![
+        Row::bound(wrong, |one: &Mixed| !one.wrong.is_empty()).at_most(0.05, level),
+        Row::share(still, held(false)),
+        Row::share(walking, held(true)),
+    ];
+    let covered = "a cause beside walks: coefficients in their 95 % intervals";
+    rows.extend(coefficient_rows(covered, |one: &Mixed| &one.covered));
+    context.measure(&population, &rows)
 }
 
-fn record(seed: u64) -> Result<Mixed, EvaluationError> {
+fn record(seed: u64) -> Result<Mixed, Error> {
     let mut random = Draw::new(seed, PURPOSE);
     let plain = Scenario {
         interval_s: 120.0,
-        ..scenario(seed)
+        ..plain(seed)
     };
-    let [least, most] = STRENGTH;
-    let strength = random.log_uniform([least, most]);
+    let strength = random.log_uniform(STRENGTH);
     let (mut with, cause) = inject_any(plain, strength, &mut random)?;
     let mut walking: Vec<usize> = (0..3).filter(|_| random.uniform() < WALKING).collect();
     if walking.is_empty() {
-        walking.push((3.0 * random.uniform()) as usize % 3);
+        walking.push((3.0 * random.uniform()) as usize);
     }
-    let axes = AXES;
     for gyro in &walking {
-        let size = random.log_uniform(WALKS);
-        let id = format!("gyro_{}.random_walk", axes[*gyro]);
-        with.hidden.push(Hidden::new(&id, &[("size", size)])?);
+        with.hidden.push(walk(*gyro, &mut random)?);
     }
-    if random.uniform() < 0.5 {
-        for axis in axes {
-            for instrument in ["gyro", "accel"] {
-                let ratio = random.log_uniform(MISDECLARED);
-                let id = format!("{instrument}_{axis}.noise");
-                with.hidden.push(Hidden::new(&id, &[("ratio", ratio)])?);
-            }
-        }
-    }
+    misdeclare(&mut with, 0.5, &mut random)?;
     let simulation = simulate(&with)?;
-    let options = DiagnoseOptions::default();
-    let found = diagnose(&simulation.record, &simulation.bench, &options)?.result;
+    let found = diagnosed(&simulation)?.result;
     let id = cause.effect.id;
-    let held: Vec<&Finding> = found.causes().filter(|one| holds(one, id)).collect();
-    let mut wrong = false_causes(&found);
-    wrong.retain(|name| held.iter().all(|one| one.effect != *name));
+    let wrong = surely_not_walks(&found).filter(|one| !holds(one, id));
     let own = cause.effect.rate();
+    let covered = coefficients(&found, &simulation).into_iter();
     Ok(Mixed {
+        wrong: wrong.map(|one| one.effect.clone()).collect(),
         walks_itself: own.is_some_and(|rate| walking.contains(&rate)),
-        in_set: !held.is_empty(),
-        covered: covered(&found, &simulation),
-        wrong,
+        in_set: found.causes().any(|one| holds(one, id)),
+        covered: covered.map(|one| one.covered).collect(),
     })
 }

@@ -1,126 +1,106 @@
 //! Hostile records: what instruments, loggers and users do that no model explains.
 
-use gyrocal_record::{AXES, Bench, Record};
 use gyrocal_statistics::deviates::Draw;
-use gyrocal_truth::{
-    Coefficients, Hidden, InitialAttitude, Scenario, Simulation, Term, simulate, simulate_with,
-};
+use gyrocal_testkit::broken_setups::leave_angles_out;
+use gyrocal_truth::{Hidden, InitialAttitude, Scenario, Simulation, simulate};
 
 use crate::error::Error;
+use crate::truth::drawn::{coefficients, flickering, of_gyro};
+
+/// This file, as a source of populations.
+pub(super) const FILE: &str = file!();
 
 /// Purpose of the stream of draws.
 const STREAM: u64 = 44;
 
 /// Rows of the records, one a minute: two days; and of the shortest.
-const ROWS: usize = 2881;
-const FEW_ROWS: usize = 145;
-
-/// Number of kinds.
-pub(super) const KINDS: usize = 25;
+pub(super) const ROWS: usize = 2881;
+pub(super) const FEW_ROWS: usize = 145;
 
 /// A plain record of a number of rows.
-pub(super) fn sound(seed: u64, rows: usize) -> Result<Simulation, Error> {
+pub(super) fn sound(seed: u64, rows: usize) -> Made {
     Ok(simulate(&plain(seed, rows))?)
 }
 
 fn plain(seed: u64, rows: usize) -> Scenario {
-    let mut random = Draw::new(seed, STREAM + 1);
-    let mut three = |size: f64| core::array::from_fn(|_| size * random.normal());
     Scenario {
         seed,
         latitude_deg: 48.2,
         initial: InitialAttitude::Random,
         duration_s: 60.0 * (rows - 1) as f64,
-        coefficients: Coefficients {
-            bias_deg_per_h: three(0.3),
-            g_deg_per_h_per_g: three(0.3),
-            gg_deg_per_h_per_g2: three(0.1),
-        },
+        coefficients: coefficients([0.3, 0.3, 0.1], &mut Draw::new(seed, STREAM + 1)),
         ..Scenario::default()
     }
 }
 
-/// The record of a kind, with its name.
-pub(super) fn record(kind: usize, seed: u64) -> Result<(&'static str, Simulation), Error> {
-    let mut random = Draw::new(seed, STREAM);
-    let (name, make): Kind = ALL[kind];
-    let plain = plain(
-        seed,
-        if name.contains("145 rows") {
-            FEW_ROWS
-        } else {
-            ROWS
-        },
-    );
-    Ok((name, make(plain, &mut random)?))
+/// The record of a seed, with its kind: all kinds in turn.
+pub(super) fn record(seed: u64) -> Result<(&'static str, Simulation), Error> {
+    let (name, make) = KINDS[(seed % KINDS.len() as u64) as usize];
+    let is_short = name.contains("145 rows");
+    let rows = if is_short { FEW_ROWS } else { ROWS };
+    let made = make(plain(seed, rows), &mut Draw::new(seed, STREAM))?;
+    Ok((name, made))
 }
 
-type Kind = (
-    &'static str,
-    fn(Scenario, &mut Draw) -> Result<Simulation, Error>,
-);
+type Made = Result<Simulation, Error>;
 
-const ALL: [Kind; KINDS] = [
+/// The first five are those of the small version.
+const KINDS: [(&str, fn(Scenario, &mut Draw) -> Made); 25] = [
+    ("noise on all axes and nothing else", |s, r| {
+        let size = r.log_uniform([1e-5, 1.0]);
+        changed(s, r, |rows, _, r| all(rows, |_| size * r.normal()))
+    }),
+    ("several huge effects", |s, r| huge(s, r, [10.0, 1000.0])),
+    ("heavy tails", |s, r| {
+        // Cauchy.
+        let deviate = |r: &mut Draw| (r.normal() / r.normal()).clamp(-2e4, 2e4);
+        changed(s, r, |rows, _, r| {
+            all(rows, |value| value + 1e-5 * deviate(r))
+        })
+    }),
+    ("noise of a hundred times the declared", |s, _| {
+        declared(&s, 0.01)
+    }),
+    ("noise with a correlation of 0.95", |s, _| {
+        with(s, "accel.coloured_noise", &[("correlation", 0.95)])
+    }),
     ("an axis clipped", |s, r| {
-        changed(s, r, |record, axis, r| {
-            let bound = largest(record, axis) * (0.3 + 0.6 * r.uniform());
-            each(record, axis, |_, value| value.clamp(-bound, bound));
+        changed(s, r, |rows, axis, r| {
+            let largest = rows.iter().map(|row| row[axis].abs()).fold(0.0, f64::max);
+            let bound = largest * (0.3 + 0.6 * r.uniform());
+            each(rows, axis, |value| value.clamp(-bound, bound));
         })
     }),
     ("an axis stuck from some row on", |s, r| {
-        changed(s, r, |record, axis, r| {
-            let first = (r.uniform() * record.len() as f64) as usize;
-            let value = record.accel_g[first][axis];
-            each(
-                record,
-                axis,
-                |row, own| if row < first { own } else { value },
-            );
+        changed(s, r, |rows, axis, r| {
+            let first = (r.uniform() * rows.len() as f64) as usize;
+            stick(&mut rows[first..], axis);
         })
     }),
-    ("an axis negated", |s, r| {
-        changed(s, r, |record, axis, _| {
-            each(record, axis, |_, value| -value)
-        })
-    }),
+    ("an axis negated", negated),
     ("an axis negated, no angles", |s, r| {
-        without_angles(changed(s, r, |record, axis, _| {
-            each(record, axis, |_, value| -value);
-        })?)
-    }),
-    ("noise on all axes and nothing else", |s, r| {
-        let size = r.log_uniform([1e-5, 1.0]);
-        changed(s, r, |record, _, r| {
-            for axis in 0..3 {
-                each(record, axis, |_, _| size * r.normal());
-            }
-        })
+        let mut simulation = negated(s, r)?;
+        leave_angles_out(&mut simulation.bench);
+        Ok(simulation)
     }),
     ("directions at random", |s, r| {
-        changed(s, r, |record, _, r| {
-            for row in &mut record.accel_g {
-                let drawn = core::array::from_fn(|_| r.normal());
+        changed(s, r, |rows, _, r| {
+            for row in rows {
+                let drawn: [f64; 3] = core::array::from_fn(|_| r.normal());
                 let norm = drawn.iter().map(|x| x * x).sum::<f64>().sqrt();
                 *row = drawn.map(|x| x / norm);
             }
         })
     }),
     ("a constant", |s, r| {
-        changed(s, r, |record, _, _| {
-            let first = record.accel_g[0];
-            record.accel_g.fill(first);
-        })
+        changed(s, r, |rows, _, _| rows.fill(rows[0]))
     }),
     ("145 rows with a stuck axis", |s, r| {
-        changed(s, r, |record, axis, _| {
-            let value = record.accel_g[0][axis];
-            each(record, axis, |_, _| value);
-        })
+        changed(s, r, |rows, axis, _| stick(rows, axis))
     }),
     ("145 rows with huge effects", |s, r| {
         huge(s, r, [100.0, 1000.0])
     }),
-    ("several huge effects", |s, r| huge(s, r, [10.0, 1000.0])),
     ("several effects of hundreds of deg/h", |s, r| {
         huge(s, r, [1e4, 1e6])
     }),
@@ -129,93 +109,56 @@ const ALL: [Kind; KINDS] = [
     ("walks of 0.2 on all gyros", |s, _| walks(s, 0.2)),
     ("flicker on all gyros", |s, r| {
         let level = r.log_uniform([1e-3, 1e-1]);
-        flicker(&s, level, r)
+        flickering(&s, [level; 3], r)
     }),
-    ("heavy tails", |s, r| {
-        changed(s, r, |record, _, r| {
-            for axis in 0..3 {
-                each(record, axis, |_, value| {
-                    // Cauchy.
-                    value + 1e-5 * (r.normal() / r.normal()).clamp(-2e4, 2e4)
-                });
-            }
-        })
+    ("outliers in a tenth of the values", |s, _| {
+        with(s, "accel.outliers", &[("fraction", 0.1), ("size", 300.0)])
     }),
-    ("outliers in a tenth of the values", |mut s, _| {
-        let parameters = [("fraction", 0.1), ("size", 300.0)];
-        s.hidden.push(Hidden::new("accel.outliers", &parameters)?);
-        Ok(simulate(&s)?)
-    }),
-    ("thirty jumps", |s, r| {
-        let hidden = (0..30).map(|_| {
+    ("thirty jumps", |mut s, r| {
+        for _ in 0..30 {
             let size = r.log_uniform([1e-3, 1.0]);
-            let mut angle = || size * r.normal();
-            let angles = [angle(), angle(), angle()];
-            let onset_s = s.duration_s * r.uniform();
-            Hidden::new(
-                "platform.knock",
-                &[
-                    ("x_deg", angles[0]),
-                    ("y_deg", angles[1]),
-                    ("z_deg", angles[2]),
-                    ("onset_s", onset_s),
-                ],
-            )
-        });
-        let hidden = hidden.collect::<Result<Vec<_>, _>>()?;
-        Ok(simulate(&Scenario { hidden, ..s })?)
-    }),
-    ("noise of a hundred times the declared", |s, _| {
-        declared(s, 0.01)
+            let [x, y, z] = core::array::from_fn(|_| size * r.normal());
+            let at = s.duration_s * r.uniform();
+            let jump = [("x_deg", x), ("y_deg", y), ("z_deg", z), ("onset_s", at)];
+            s.hidden.push(Hidden::new("platform.knock", &jump)?);
+        }
+        Ok(simulate(&s)?)
     }),
     ("noise of a hundredth of the declared", |s, _| {
-        declared(s, 100.0)
-    }),
-    ("noise with a correlation of 0.95", |mut s, _| {
-        let parameters = [("correlation", 0.95)];
-        s.hidden
-            .push(Hidden::new("accel.coloured_noise", &parameters)?);
-        Ok(simulate(&s)?)
+        declared(&s, 100.0)
     }),
     ("sinusoids of 50 sigma and more", |mut s, r| {
-        for gyro in ["gyro_x", "gyro_y", "gyro_z", "accel_x"] {
-            let size = if gyro == "accel_x" { 1e-4 } else { 0.02 };
-            let size = size * r.log_uniform([0.3, 10.0]);
-            let parameters = [("size", size), ("period_h", r.log_uniform([0.3, 30.0]))];
+        for instrument in ["gyro_x", "gyro_y", "gyro_z", "accel_x"] {
+            let middle = if instrument == "accel_x" { 1e-4 } else { 0.02 };
+            let size = middle * r.log_uniform([0.3, 10.0]);
+            let tone = [("size", size), ("period_h", r.log_uniform([0.3, 30.0]))];
             s.hidden
-                .push(Hidden::new(&format!("{gyro}.tone"), &parameters)?);
+                .push(Hidden::new(&format!("{instrument}.tone"), &tone)?);
         }
         Ok(simulate(&s)?)
     }),
     ("friction and dead zones", |mut s, r| {
-        for gyro in AXES {
-            let size = r.log_uniform([0.003, 0.3]);
-            s.hidden.push(Hidden::new(
-                &format!("gyro_{gyro}.sign_x"),
-                &[("size", size)],
-            )?);
-            let size = r.log_uniform([0.003, 0.3]);
-            s.hidden.push(Hidden::new(
-                &format!("gyro_{gyro}.dead_zone"),
-                &[("size", size)],
-            )?);
+        for gyro in 0..3 {
+            for effect in ["sign_x", "dead_zone"] {
+                let size = r.log_uniform([0.003, 0.3]);
+                s.hidden.push(of_gyro(gyro, effect, size)?);
+            }
         }
         Ok(simulate(&s)?)
     }),
     ("rows in another order", |s, r| {
-        changed(s, r, |record, _, r| {
-            for row in 0..record.len() {
+        changed(s, r, |rows, _, r| {
+            for row in 0..rows.len() {
                 let other = row + (r.uniform() * 30.0) as usize;
-                if other < record.len() {
-                    record.accel_g.swap(row, other);
+                if other < rows.len() {
+                    rows.swap(row, other);
                 }
             }
         })
     }),
-    ("a latitude some degrees off", |mut s, r| {
-        let parameters = [("size", r.sign() * r.log_uniform([0.1, 10.0]))];
-        s.hidden.push(Hidden::new("site.latitude", &parameters)?);
-        Ok(simulate(&s)?)
+    ("a latitude some degrees off", |s, r| {
+        let size = r.sign() * r.log_uniform([0.1, 10.0]);
+        with(s, "site.latitude", &[("size", size)])
     }),
 ];
 
@@ -223,92 +166,78 @@ const ALL: [Kind; KINDS] = [
 fn changed(
     scenario: Scenario,
     random: &mut Draw,
-    change: impl FnOnce(&mut Record, usize, &mut Draw),
-) -> Result<Simulation, Error> {
+    change: impl FnOnce(&mut [[f64; 3]], usize, &mut Draw),
+) -> Made {
     let mut simulation = simulate(&scenario)?;
     let axis = *random.one_of(&[0, 1, 2]);
-    change(&mut simulation.record, axis, random);
+    change(&mut simulation.record.accel_g, axis, random);
     Ok(simulation)
 }
 
-fn each(record: &mut Record, axis: usize, mut change: impl FnMut(usize, f64) -> f64) {
-    for (row, values) in record.accel_g.iter_mut().enumerate() {
-        values[axis] = change(row, values[axis]);
+fn each(rows: &mut [[f64; 3]], axis: usize, mut change: impl FnMut(f64) -> f64) {
+    for row in rows {
+        row[axis] = change(row[axis]);
     }
 }
 
-fn largest(record: &Record, axis: usize) -> f64 {
-    let values = record.accel_g.iter().map(|row| row[axis].abs());
-    values.fold(0.0, f64::max)
+fn all(rows: &mut [[f64; 3]], mut change: impl FnMut(f64) -> f64) {
+    for axis in 0..3 {
+        each(rows, axis, &mut change);
+    }
 }
 
-fn without_angles(mut simulation: Simulation) -> Result<Simulation, Error> {
-    gyrocal_testkit::broken_setups::leave_angles_out(&mut simulation.bench);
-    Ok(simulation)
+/// Repeats the first value of an axis.
+fn stick(rows: &mut [[f64; 3]], axis: usize) {
+    let value = rows[0][axis];
+    each(rows, axis, |_| value);
+}
+
+fn negated(scenario: Scenario, random: &mut Draw) -> Made {
+    changed(scenario, random, |rows, axis, _| {
+        each(rows, axis, |value| -value);
+    })
+}
+
+fn with(mut scenario: Scenario, id: &str, parameters: &[(&str, f64)]) -> Made {
+    scenario.hidden.push(Hidden::new(id, parameters)?);
+    Ok(simulate(&scenario)?)
 }
 
 /// Six effects of sizes that many sigmas of theirs are.
-fn huge(mut scenario: Scenario, random: &mut Draw, range: [f64; 2]) -> Result<Simulation, Error> {
+fn huge(mut scenario: Scenario, random: &mut Draw, range: [f64; 2]) -> Made {
     let onset_s = scenario.duration_s * random.uniform();
     let mut size = |sigma: f64| random.sign() * sigma * random.log_uniform(range);
-    let effects = [
-        (
-            "gyro_x.step",
-            vec![("size", size(2e-4)), ("onset_s", onset_s)],
-        ),
+    let effects: [(&str, &[(&str, f64)]); 6] = [
+        ("gyro_x.step", &[("size", size(2e-4)), ("onset_s", onset_s)]),
         (
             "gyro_y.warmup",
-            vec![("size", size(5e-4)), ("time_constant_h", 6.0)],
+            &[("size", size(5e-4)), ("time_constant_h", 6.0)],
         ),
-        ("gyro_z.ramp", vec![("size", size(5e-4))]),
-        ("gyro_y.g_z", vec![("size", size(2e-4))]),
+        ("gyro_z.ramp", &[("size", size(5e-4))]),
+        ("gyro_y.g_z", &[("size", size(2e-4))]),
         (
             "gyro_z.diurnal",
-            vec![("sine", size(2e-4)), ("cosine", size(2e-4))],
+            &[("sine", size(2e-4)), ("cosine", size(2e-4))],
         ),
-        ("gyro_x.g_xy", vec![("size", size(2e-4))]),
+        ("gyro_x.g_xy", &[("size", size(2e-4))]),
     ];
     for (id, parameters) in effects {
-        scenario.hidden.push(Hidden::new(id, &parameters)?);
+        scenario.hidden.push(Hidden::new(id, parameters)?);
     }
     Ok(simulate(&scenario)?)
 }
 
-fn walks(mut scenario: Scenario, size: f64) -> Result<Simulation, Error> {
-    for gyro in AXES {
-        let id = format!("gyro_{gyro}.random_walk");
-        scenario.hidden.push(Hidden::new(&id, &[("size", size)])?);
+fn walks(mut scenario: Scenario, size: f64) -> Made {
+    for gyro in 0..3 {
+        scenario.hidden.push(of_gyro(gyro, "random_walk", size)?);
     }
     Ok(simulate(&scenario)?)
 }
 
 /// A record whose bench description declares its noise so many times too large.
-fn declared(scenario: Scenario, factor: f64) -> Result<Simulation, Error> {
-    let mut simulation = simulate(&scenario)?;
-    let bench: &mut Bench = &mut simulation.bench;
-    bench.accel_noise_g *= factor;
-    bench.gyro_noise_deg_per_h *= factor;
+fn declared(scenario: &Scenario, factor: f64) -> Made {
+    let mut simulation = simulate(scenario)?;
+    simulation.bench.accel_noise_g *= factor;
+    simulation.bench.gyro_noise_deg_per_h *= factor;
     Ok(simulation)
-}
-
-/// Sums of Gauss-Markov processes of equal variance, deg/h.
-fn flicker(scenario: &Scenario, level: f64, random: &mut Draw) -> Result<Simulation, Error> {
-    const TIMES_H: [f64; 5] = [0.1, 1.0, 10.0, 100.0, 1000.0];
-    let step_s = scenario.interval_s;
-    let rows = (scenario.duration_s / step_s) as usize + 2;
-    let mut states: [[f64; 3]; _] = TIMES_H.map(|_| core::array::from_fn(|_| random.normal()));
-    let mut series = vec![[0.0; 3]; rows];
-    for drifts in &mut series {
-        for (state, time_h) in states.iter_mut().zip(TIMES_H) {
-            let kept = (-step_s / 3600.0 / time_h).exp();
-            for (drift, state) in drifts.iter_mut().zip(state) {
-                *drift += level * *state;
-                *state = kept * *state + (1.0 - kept * kept).sqrt() * random.normal();
-            }
-        }
-    }
-    let term = Term::Drift(Box::new(move |moment| {
-        series[((moment.time_s / step_s) as usize).min(rows - 1)]
-    }));
-    Ok(simulate_with(scenario, &[term])?)
 }
