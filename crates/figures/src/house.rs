@@ -1,6 +1,5 @@
-//! The structure of the tree; equal results before and after; cost of a build.
+//! The structure of the tree, cost of a build.
 
-mod before;
 mod builds;
 mod structure;
 
@@ -14,15 +13,10 @@ use crate::figure::Figure;
 /// Standard deviations within which the parameters of a term of one's own are found.
 const OWN_TERM_SIGMAS: f64 = 3.0;
 
-/// All figures of the topic; the small ones without builds. `write` renews the results that later builds
-/// are compared with.
-pub(crate) fn figures(small: bool, write: bool) -> Result<Vec<Figure>, Error> {
+/// All figures of the topic; the small ones without builds.
+pub(crate) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
     let root = workspace();
-    if write {
-        before::write(&root)?;
-    }
     let mut figures = structure::figures(&root)?.to_vec();
-    figures.extend(before::figures(&root)?);
     if !small {
         figures.push(own_terms()?);
         figures.extend(builds::figures(&root)?);

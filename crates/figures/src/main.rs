@@ -2,6 +2,7 @@
 //! runs, seeds and commit. The exit code is 1 if a figure does not hold.
 
 mod any_plant;
+mod before;
 mod calibration;
 mod catalogue;
 mod comparison;
@@ -57,6 +58,9 @@ struct Extent {
     /// Most records of each population.
     #[arg(long, value_name = "COUNT", conflicts_with = "small")]
     records: Option<u64>,
+    /// Only the record of this name (doors, part before).
+    #[arg(long = "record", value_name = "NAME")]
+    named: Vec<String>,
     /// Also write the table into this file.
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
@@ -72,7 +76,9 @@ impl Extent {
             None if self.small => Size::Small,
             None => Size::Full,
         };
-        let context = Context::new(size, Seeds::Development).writing(self.write);
+        let context = Context::new(size, Seeds::Development)
+            .writing(self.write)
+            .of_records(self.named.clone());
         match self.small {
             true => context,
             false => context.kept(gyrocal_testkit::workspace().join("target/figures")),
@@ -107,6 +113,9 @@ fn definition() -> Command {
 }
 
 fn main() -> ExitCode {
+    if let Some(arguments) = before::as_command() {
+        return ExitCode::from(gyrocal_cli::run(arguments));
+    }
     let matches = definition().get_matches();
     let measured = match matches.subcommand() {
         Some(("night", matches)) => Night::from_arg_matches(matches)

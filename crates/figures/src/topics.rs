@@ -9,7 +9,7 @@ use crate::harness::sources::{
 use crate::harness::topic::{Part, Topic};
 use crate::truth::Extent;
 use crate::{
-    any_plant, calibration, catalogue, comparison, diagnosis_ground, embedded, fleet, gain,
+    any_plant, before, calibration, catalogue, comparison, diagnosis_ground, embedded, fleet, gain,
     generator, house, kernel, logs, main_job, measured, naming, paper, plant_peers, report, truth,
     uncertainty, watch,
 };
@@ -256,9 +256,15 @@ pub(crate) const TOPICS: [Topic; 8] = [
         parts: &[
             part(
                 "structure",
-                "Structure of the tree, equal results before and after, cost of a build.",
+                "Structure of the tree, cost of a build and of the gate.",
                 of(COMMAND, &["crates", "codegen", "src"]),
-                |to| house::figures(to.is_small(), to.write),
+                |to| house::figures(to.is_small()),
+            ),
+            part(
+                "before",
+                "Results of 40 records, every key, against those of an earlier build.",
+                of(COMMAND, &["crates/figures/src/before", "tests/data/before"]),
+                before::figures,
             ),
             part(
                 "report",

@@ -91,21 +91,25 @@ pub fn violations(schema: &str, result: &str) -> String {
     errors.join("\n")
 }
 
+/// The words of a line of arguments. `@` begins a path in the repository, `%` one in a folder.
+pub fn words(line: &str, folder: &Path) -> Vec<String> {
+    let word = |word: &str| match word.split_at(1) {
+        ("@", path) => workspace().join(path).display().to_string(),
+        ("%", name) => folder.join(name).display().to_string(),
+        _ => word.to_owned(),
+    };
+    line.split_whitespace().map(word).collect()
+}
+
 fn fault(
     command: &str,
     rest: &[&str],
     folder: &Path,
     run: impl Fn(&[String]) -> Result<(), String>,
 ) -> String {
-    let argument = |word: &str| match word.split_at(1) {
-        ("@", path) => workspace().join(path).display().to_string(),
-        ("%", name) => folder.join(name).display().to_string(),
-        _ => word.to_owned(),
-    };
     let json = folder.join(format!("{}.json", command.replace(' ', "-")));
     let mut arguments: Vec<String> = command.split(' ').map(str::to_owned).collect();
-    let words = rest.iter().flat_map(|words| words.split_whitespace());
-    arguments.extend(words.map(argument));
+    arguments.extend(rest.iter().flat_map(|line| words(line, folder)));
     arguments.extend(["--json".to_owned(), json.display().to_string()]);
     if let Err(reason) = run(&arguments) {
         return reason;

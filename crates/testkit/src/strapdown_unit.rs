@@ -1,12 +1,14 @@
 //! Records of the platform that is computed from the outputs of a strapdown unit, with the axes of its
 //! instruments.
 
-use gyrocal_record::{Bench, Record};
+use std::path::Path;
+
+use gyrocal_record::{Bench, Record, write_whole};
 use gyrocal_statistics::deviates::Normals;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 /// The bench description of all records: its text.
-pub const BENCH: &str = "[site]\nlatitude_deg = 39.1\n\n[platform]\ninitial_angles_deg = [0.0, 0.0, 0.0]\n\
+const BENCH: &str = "[site]\nlatitude_deg = 39.1\n\n[platform]\ninitial_angles_deg = [0.0, 0.0, 0.0]\n\
                          initial_angles_sigma_deg = [0.02, 0.02, 0.02]\n\n[noise]\naccel_g = 1e-5\n\
                          gyro_deg_per_h = 0.002\n\n[prior]\nbias_sigma_deg_per_h = 1.0\n\
                          g_sigma_deg_per_h_per_g = 1.0\ngg_sigma_deg_per_h_per_g2 = 1.0\n";
@@ -22,7 +24,7 @@ const DAY_S: f64 = 86_400.0;
 pub struct StrapdownUnit {
     /// Specific force along the platform, whose axes are East, North, Up at the first row.
     pub record: Record,
-    /// [`BENCH`].
+    /// Its bench description, the same of all.
     pub bench: Bench,
     /// Unit quaternions (w, x, y, z) that take components along the body to components along the platform,
     /// one for each row.
@@ -91,6 +93,17 @@ impl UnitRun<'_> {
 }
 
 impl StrapdownUnit {
+    /// Writes `record.csv`, `axes.csv` and `bench.toml` into a folder.
+    pub fn write(&self, folder: &Path) -> Result<(), gyrocal_record::Error> {
+        self.record.write(&folder.join("record.csv"))?;
+        let mut axes = "time_s,q_w,q_x,q_y,q_z\n".to_owned();
+        for (time_s, [w, x, y, z]) in self.record.time_s.iter().zip(&self.platform_q_body) {
+            axes += &format!("{time_s},{w:?},{x:?},{y:?},{z:?}\n");
+        }
+        write_whole(&folder.join("axes.csv"), axes.as_bytes())?;
+        write_whole(&folder.join("bench.toml"), BENCH.as_bytes())
+    }
+
     /// Matrices, by rows, that take components along the body to components along the platform: at the
     /// middle of the interval before a row, and at it.
     pub fn axes(&self, row: usize) -> [[[f64; 3]; 3]; 2] {

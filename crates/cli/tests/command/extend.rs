@@ -1,9 +1,7 @@
 //! `gyrocal extend`: from findings, or a list of effects, to a model file.
 
-use std::fmt::Write as _;
-
 use gyrocal_record::{KnownEffect, ModelFile, Standing};
-use gyrocal_testkit::strapdown_unit::{BENCH, UnitRun};
+use gyrocal_testkit::strapdown_unit::UnitRun;
 use serde_json::{Value, json};
 
 use crate::folder::Folder;
@@ -275,20 +273,14 @@ fn a_fault_of_a_strapdown_unit_goes_from_its_record_to_the_model_file() {
         accel_error: &|_, _| [0.0; 3],
     }
     .simulate();
-    unit.record.write(&folder.path("r.csv")).unwrap();
-    folder.put("b.toml", BENCH);
-    let mut axes = "time_s,q_w,q_x,q_y,q_z\n".to_owned();
-    for (time_s, [w, x, y, z]) in unit.record.time_s.iter().zip(&unit.platform_q_body) {
-        writeln!(axes, "{time_s},{w:?},{x:?},{y:?},{z:?}").unwrap();
-    }
-    folder.put("a.csv", axes);
+    unit.write(&folder.path("")).unwrap();
     let diagnosed = [
         "diagnose",
-        "r.csv",
+        "record.csv",
         "--bench",
-        "b.toml",
+        "bench.toml",
         "--gyro-axes",
-        "a.csv",
+        "axes.csv",
         "--json",
         "d.json",
     ];

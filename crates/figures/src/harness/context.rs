@@ -74,6 +74,8 @@ pub(crate) struct Context {
     pub(crate) seeds: Seeds,
     /// Whether documents and committed measurements are renewed instead of compared.
     pub(crate) write: bool,
+    /// Names of the records that a part with a table of records is limited to; all without a name.
+    pub(crate) named: Vec<String>,
     /// Folder of results; `None` keeps them in memory.
     store: Option<PathBuf>,
     /// No record is begun after this.
@@ -109,6 +111,7 @@ impl Context {
             size,
             seeds,
             write: false,
+            named: Vec::new(),
             store: None,
             deadline: None,
             known: Mutex::default(),
@@ -132,6 +135,11 @@ impl Context {
     /// The same with leave to renew committed files.
     pub(crate) fn writing(self, write: bool) -> Self {
         Self { write, ..self }
+    }
+
+    /// The same limited to records of these names.
+    pub(crate) fn of_records(self, named: Vec<String>) -> Self {
+        Self { named, ..self }
     }
 
     pub(crate) fn is_small(&self) -> bool {

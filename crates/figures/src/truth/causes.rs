@@ -22,8 +22,8 @@ use super::judged::{self, coefficient_rows, coefficients, diagnosed, holds, may_
 use crate::error::Error;
 use crate::figure::Figure;
 use crate::harness::sources::Sources;
+use crate::harness::sources::{DIAGNOSIS, of};
 use crate::harness::{Context, Population, Row};
-use crate::topics::{DIAGNOSIS, of};
 
 use Causes::{All, Of, Slow};
 use EffectKind::{Exponential, InitialState, Periodic, Ramp, Regressor, StateJump, Step};

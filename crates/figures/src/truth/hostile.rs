@@ -14,8 +14,8 @@ use crate::cost::on_one_core;
 use crate::error::Error;
 use crate::figure::Figure;
 use crate::harness::sources::Sources;
+use crate::harness::sources::of;
 use crate::harness::{Context, Population, Row};
-use crate::topics::of;
 use records::{FEW_ROWS, ROWS, record, sound};
 
 const SOURCES: Sources = of(

@@ -11,8 +11,8 @@ use super::judged::{self, diagnosed, surely_not_walks, within};
 use crate::error::Error;
 use crate::figure::Figure;
 use crate::harness::sources::Sources;
+use crate::harness::sources::{DIAGNOSIS, of};
 use crate::harness::{COVERAGE, COVERAGE_REASON, Context, Population, Row};
-use crate::topics::{DIAGNOSIS, of};
 
 /// What can move the records.
 const SOURCES: Sources = of(DIAGNOSIS, &[file!(), drawn::FILE, judged::FILE]);

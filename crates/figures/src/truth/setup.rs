@@ -17,8 +17,8 @@ use super::judged::{self, run};
 use crate::error::Error;
 use crate::figure::Figure;
 use crate::harness::sources::Sources;
+use crate::harness::sources::of;
 use crate::harness::{Context, Population, Row};
-use crate::topics::of;
 
 const SOURCES: Sources = of(
     &["crates/diagnosis", "crates/evaluation", "crates/testkit"],

@@ -44,8 +44,11 @@ pub(super) fn record(seed: u64) -> Result<(&'static str, Simulation), Error> {
 
 type Made = Result<Simulation, Error>;
 
+/// Makes a record of a kind.
+type Maker = fn(Scenario, &mut Draw) -> Made;
+
 /// The first five are those of the small version.
-const KINDS: [(&str, fn(Scenario, &mut Draw) -> Made); 25] = [
+const KINDS: [(&str, Maker); 25] = [
     ("noise on all axes and nothing else", |s, r| {
         let size = r.log_uniform([1e-5, 1.0]);
         changed(s, r, |rows, _, r| all(rows, |_| size * r.normal()))
