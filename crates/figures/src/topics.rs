@@ -266,15 +266,18 @@ pub(crate) const TOPICS: [Topic; 8] = [
                 of(COMMAND, &["crates/figures/src/before", "tests/data/before"]),
                 before::figures,
             ),
-            part(
-                "report",
-                "The report: its files, in a browser; pictures of it.",
-                of(
-                    COMMAND,
-                    &["crates/figures/src/report.rs", "crates/figures/src/report"],
-                ),
-                |to| report::figures(to.is_small(), to.write),
-            ),
+            Part {
+                small: false,
+                ..part(
+                    "report",
+                    "The report: its files, in a browser; pictures of it.",
+                    of(
+                        COMMAND,
+                        &["crates/figures/src/report.rs", "crates/figures/src/report"],
+                    ),
+                    |to| report::figures(to.is_small(), to.write),
+                )
+            },
             Part {
                 small: false,
                 ..part(
