@@ -168,10 +168,13 @@ fn over_tolerance(path: &str, before: &Value, now: &Value, scale: Option<f64>) -
     if a == b || !before.is_f64() && !now.is_f64() {
         return if a == b { 0.0 } else { f64::INFINITY };
     }
-    if path.ends_with("p_value") && a > 0.0 && b > 0.0 {
-        // Of z² / 2, of which a p-value is about the exponential.
+    if path.ends_with("p_value") {
+        // Of z² / 2, of which a p-value is about the exponential; that of zero is infinite.
         let [a, b] = [a, b].map(f64::ln);
-        return (a - b).abs() / (SAME * a.abs().max(1.0));
+        return match a.is_finite() && b.is_finite() {
+            true => (a - b).abs() / (SAME * a.abs().max(1.0)),
+            false => f64::INFINITY,
+        };
     }
     let tolerance = SAME * scale.unwrap_or(a.abs());
     (a - b).abs() / tolerance.max(DIGITS * a.abs()).max(ZERO)
