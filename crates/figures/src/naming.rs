@@ -13,17 +13,17 @@ use crate::truth::Extent;
 
 /// Number of records of each cell in the small version.
 const SMALL_RUNS: [(PopulationCell, u64); 11] = [
-    (PopulationCell::Clean, 8),
-    (PopulationCell::Single(5), 4),
-    (PopulationCell::Single(6), 4),
-    (PopulationCell::Single(8), 8),
-    (PopulationCell::Single(12), 4),
-    (PopulationCell::LogUniform, 3),
-    (PopulationCell::Pair, 3),
-    (PopulationCell::Step, 2),
-    (PopulationCell::Cubic, 2),
-    (PopulationCell::Azimuth, 2),
-    (PopulationCell::OutOfCatalogue, 2),
+    (PopulationCell::Clean, 4),
+    (PopulationCell::Single(5), 1),
+    (PopulationCell::Single(6), 1),
+    (PopulationCell::Single(8), 3),
+    (PopulationCell::Single(12), 1),
+    (PopulationCell::LogUniform, 1),
+    (PopulationCell::Pair, 1),
+    (PopulationCell::Step, 1),
+    (PopulationCell::Cubic, 1),
+    (PopulationCell::Azimuth, 1),
+    (PopulationCell::OutOfCatalogue, 1),
 ];
 
 /// All figures of the topic.
