@@ -67,7 +67,7 @@ pub(crate) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
     figures.extend(gauges::figures()?);
     figures.push(starts(&plants, extent.records(100, 2))?);
     figures.push(effort::lines()?);
-    figures.push(effort::duration()?);
+    figures.push(effort::duration()?.timed(extent.small));
     figures.extend(interpreted::figures(&plants[0].1, extent.records(20, 2))?);
     Ok(figures)
 }

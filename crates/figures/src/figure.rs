@@ -137,6 +137,15 @@ impl Figure {
         }
     }
 
+    /// A time, or a ratio of times: on a machine that does other work as well, as that of a small version may, it says
+    /// little, and is shown and not judged.
+    pub(crate) fn timed(self, small: bool) -> Self {
+        Self {
+            holds: self.holds.filter(|_| !small),
+            ..self
+        }
+    }
+
     pub(crate) fn over(self, runs: usize, seeds: impl Into<String>) -> Self {
         Self {
             runs,

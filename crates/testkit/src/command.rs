@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 
 use crate::copy::workspace;
 use crate::files::fresh_directory;
-use crate::tools::{Tool, programs, tool};
+use crate::tools::{Tool, leave_out, programs, tool};
 
 /// Outcome of a command.
 #[derive(Debug)]
@@ -102,6 +102,39 @@ pub fn codegen(directory: &Path, arguments: &[&str]) -> Command {
         .arg(directory)
         .args(arguments);
     command
+}
+
+/// The interpreter of a virtual environment in `directory` with packages of PyPI, made where there is none
+/// for these requirements; `None`, with a remark, where there is no Python or no such packages.
+///
+/// # Panics
+/// With what is missing in continuous integration.
+#[track_caller]
+pub fn python_with(directory: &Path, requirements: &str) -> Option<PathBuf> {
+    let python = tool(Tool::Python)?;
+    let environment = directory.join("env");
+    let own = environment.join("bin/python");
+    // Written last: an environment without it is half-made.
+    let installed = environment.join("installed.txt");
+    if std::fs::read_to_string(&installed).is_ok_and(|text| text == requirements) {
+        return Some(own);
+    }
+    std::fs::create_dir_all(directory).unwrap();
+    let wanted = directory.join("requirements.txt");
+    std::fs::write(&wanted, requirements).unwrap();
+    let mut venv = Command::new(python);
+    run(venv.args(["-m", "venv", "--clear"]).arg(&environment)).succeeded();
+    let outcome = run(Command::new(&own)
+        .args(["-m", "pip", "install", "--quiet"])
+        .args(["--disable-pip-version-check", "--requirement"])
+        .arg(wanted));
+    if !outcome.success {
+        let error = outcome.stderr;
+        leave_out(&format!("packages of Python cannot be had: {error}"));
+        return None;
+    }
+    std::fs::write(installed, requirements).unwrap();
+    Some(own)
 }
 
 /// The environments of the workspace itself, which tests reuse.

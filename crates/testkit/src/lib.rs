@@ -66,9 +66,11 @@ pub mod timing;
 mod tiny;
 mod tools;
 
-pub use command::{Outcome, cargo, codegen, real_environments, run, system_python, tools_only};
+pub use command::{
+    Outcome, cargo, codegen, python_with, real_environments, run, system_python, tools_only,
+};
 pub use copy::{WorkspaceCopy, workspace};
 pub use files::{edit, executable, fresh_directory, snapshot};
 pub use own_terms::{FoundParameter, FoundTerm, add_own_terms, code_block, find_own_terms};
 pub use tiny::TinyDerivation;
-pub use tools::{Tool, leave_out, python_with, tool};
+pub use tools::{Tool, leave_out, tool};

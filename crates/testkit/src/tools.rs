@@ -201,43 +201,6 @@ fn leave_out_among(reason: &str, variables: Variables) {
     eprintln!("\nLEFT OUT: {reason}\n");
 }
 
-/// The interpreter of a virtual environment in `directory` with packages of PyPI, made where there is none
-/// for these requirements; `None`, with a remark, where there is no Python or no such packages.
-///
-/// # Panics
-/// With what is missing in continuous integration.
-#[track_caller]
-pub fn python_with(directory: &Path, requirements: &str) -> Option<PathBuf> {
-    let python = tool(Tool::Python)?;
-    let environment = directory.join("env");
-    let own = environment.join("bin/python");
-    // Written last: an environment without it is half-made.
-    let installed = environment.join("installed.txt");
-    if std::fs::read_to_string(&installed).is_ok_and(|text| text == requirements) {
-        return Some(own);
-    }
-    std::fs::create_dir_all(directory).unwrap();
-    let wanted = directory.join("requirements.txt");
-    std::fs::write(&wanted, requirements).unwrap();
-    let run = |command: &mut Command| crate::run(command).succeeded();
-    run(Command::new(python)
-        .args(["-m", "venv", "--clear"])
-        .arg(&environment));
-    let outcome = crate::run(
-        Command::new(&own)
-            .args(["-m", "pip", "install", "--quiet"])
-            .args(["--disable-pip-version-check", "--requirement"])
-            .arg(wanted),
-    );
-    if !outcome.success {
-        let error = outcome.stderr;
-        leave_out(&format!("packages of Python cannot be had: {error}"));
-        return None;
-    }
-    std::fs::write(installed, requirements).unwrap();
-    Some(own)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

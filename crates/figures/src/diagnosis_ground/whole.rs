@@ -87,6 +87,9 @@ pub(super) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
         alarms.trials,
         100.0 * alarms.upper_bound(0.95)
     );
+    if small {
+        figure = figure.judged(alarms.at_most(NOMINAL));
+    }
     figures.push(figure.over(alarms.trials as usize, seeds));
     Ok(figures)
 }

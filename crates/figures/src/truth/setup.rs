@@ -43,7 +43,7 @@ pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
     let mut figures = broken(context)?;
     figures.extend(sound(context)?);
     figures.extend(undecided(context)?);
-    figures.extend(time()?);
+    figures.extend(time(context.is_small())?);
     Ok(figures)
 }
 
@@ -212,7 +212,7 @@ fn timed_ms(mut job: impl FnMut()) -> f64 {
     median(&times)
 }
 
-fn time() -> Result<Vec<Figure>, Error> {
+fn time(small: bool) -> Result<Vec<Figure>, Error> {
     let of_gate = |simulation: &Simulation| {
         timed_ms(|| {
             std::hint::black_box(check_setup(&simulation.record, &simulation.bench));
@@ -236,9 +236,15 @@ fn time() -> Result<Vec<Figure>, Error> {
     let with = name("with a refit as given and corrected");
     let ratio = format!("time of the gate at {MORE} times the rows over {MORE} times the time");
     Ok(vec![
-        Figure::at_most(&name("without a refit"), 100.0, once, "ms").over(TIMED_RUNS, ""),
-        Figure::at_most(&with, 500.0, slowest[0].max(slowest[1]), "ms").over(2 * TIMED_RUNS, ""),
+        Figure::at_most(&name("without a refit"), 100.0, once, "ms")
+            .timed(small)
+            .over(TIMED_RUNS, ""),
+        Figure::at_most(&with, 500.0, slowest[0].max(slowest[1]), "ms")
+            .timed(small)
+            .over(2 * TIMED_RUNS, ""),
         Figure::truth("the latitude's sign stops the diagnosis", is_told),
-        Figure::within(&ratio, [0.0, 1.5], more / once / MORE).over(TIMED_RUNS, ""),
+        Figure::within(&ratio, [0.0, 1.5], more / once / MORE)
+            .timed(small)
+            .over(TIMED_RUNS, ""),
     ])
 }
