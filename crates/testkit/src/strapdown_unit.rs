@@ -43,7 +43,7 @@ pub struct UnitRun<'a> {
     pub rows: usize,
     /// Seed of the noise.
     pub seed: u64,
-    /// Errors of the gyros by the specific force along the body [g] and the time in days, deg/h.
+    /// Errors of the gyros by the specific force along the body in g and the time in days, deg/h.
     pub gyro_error: &'a dyn Fn([f64; 3], f64) -> [f64; 3],
     /// Errors of the accelerometers by the same, g.
     pub accel_error: &'a dyn Fn([f64; 3], f64) -> [f64; 3],
