@@ -65,6 +65,7 @@ fn kind(kind: Kind) -> TokenStream {
     }
 }
 
+#[expect(clippy::cognitive_complexity, reason = "one arm for each form")]
 fn literal(value: &Value) -> TokenStream {
     match value {
         Value::Text(text) => quote!(#text),

@@ -73,8 +73,7 @@ fn read(path: &Path, text: &str) -> (Vec<String>, String) {
         let left_out = tests || line.trim_start().starts_with("//");
         if left_out { "" } else { line }
     });
-    let lines: Vec<&str> = lines.collect();
-    (module, lines.join("\n"))
+    (module, lines.collect::<Vec<_>>().join("\n"))
 }
 
 /// Line and literal of each place that compares an id or kind of an effect, or a part of one.
