@@ -29,6 +29,7 @@ pub(crate) struct Deviates(DMatrix<f64>);
 
 impl Deviates {
     pub(crate) fn new(rows: usize, draws: usize, seed: u64) -> Self {
+        // ChaCha8: see `gyrocal_statistics::deviates`.
         let mut generator = ChaCha8Rng::seed_from_u64(seed);
         Self(DMatrix::from_fn(rows.max(1), draws, |_, _| {
             polar(&mut generator)

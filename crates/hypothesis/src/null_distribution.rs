@@ -48,6 +48,7 @@ pub(crate) struct NullDistribution {
 
 /// Standard normal deviates that all draws of one search share: [`DRAWS`] for each signature.
 pub(crate) struct GaussianDraws {
+    /// ChaCha8: see [`gyrocal_statistics::deviates`].
     generator: ChaCha8Rng,
     values: Vec<f64>,
 }

@@ -120,6 +120,7 @@ impl State {
 /// it is after the filter has moved it.
 #[must_use]
 pub fn states(purpose: Purpose, count: usize) -> Vec<State> {
+    // ChaCha8: see `gyrocal_statistics::deviates`.
     let mut rng = ChaCha8Rng::seed_from_u64(SEED);
     rng.set_stream(purpose as u64);
     (0..count)

@@ -3,7 +3,6 @@
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
-use chacha20::ChaCha8Rng;
 use gyrocal_record::AXES;
 use gyrocal_report::page::Tint;
 use gyrocal_report::{
@@ -13,7 +12,7 @@ use gyrocal_report::{
     RankedEffect, Ranking, RankingGroup, ResidualChannel, ResidualVsCovariate, Residuals, Role,
     Spectrum, SpectrumChannel, write_png, write_svg,
 };
-use rand::{RngExt, SeedableRng};
+use gyrocal_statistics::deviates::Draw;
 
 const STEP_S: f64 = 60.0;
 const DAY_S: f64 = 86_400.0;
@@ -24,7 +23,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let directory = std::env::args().nth(1).map(PathBuf::from);
     let directory = directory.ok_or("name a directory for the pictures")?;
     std::fs::create_dir_all(&directory)?;
-    let mut noise = Noise(ChaCha8Rng::seed_from_u64(1));
+    let mut noise = Draw::new(1, 0);
     let pictures: [(&str, Box<dyn Picture>); 9] = [
         ("convergence", Box::new(convergence(&mut noise))),
         ("residuals", Box::new(residuals(&mut noise))),
@@ -50,20 +49,6 @@ fn draw(picture: &dyn Picture, stem: &Path) -> Result<(), gyrocal_report::Error>
     write_png(picture, &stem.with_extension("png"), 1920)
 }
 
-struct Noise(ChaCha8Rng);
-
-impl Noise {
-    /// A standard normal number (Box and Muller).
-    fn normal(&mut self) -> f64 {
-        let radius: f64 = (-2.0 * (1.0 - self.0.random::<f64>()).ln()).sqrt();
-        radius * (std::f64::consts::TAU * self.0.random::<f64>()).cos()
-    }
-
-    fn normals(&mut self, count: usize) -> Vec<f64> {
-        (0..count).map(|_| self.normal()).collect()
-    }
-}
-
 /// Times of three days without a few hours of the second.
 fn times() -> Vec<f64> {
     let all = (0..4320).map(|row| f64::from(row) * STEP_S);
@@ -75,7 +60,7 @@ fn sidereal(time_s: f64) -> f64 {
     std::f64::consts::TAU * time_s / SIDEREAL_DAY_S
 }
 
-fn convergence(noise: &mut Noise) -> Convergence {
+fn convergence(noise: &mut Draw) -> Convergence {
     let time_s = times();
     let mut parameters = Vec::new();
     for (power, (kind, unit)) in COEFFICIENTS.into_iter().enumerate() {
@@ -110,11 +95,11 @@ fn convergence(noise: &mut Noise) -> Convergence {
     }
 }
 
-fn residuals(noise: &mut Noise) -> Residuals {
+fn residuals(noise: &mut Draw) -> Residuals {
     let time_s = times();
     let sigma = 1e-5;
     let mut white = || -> Vec<f64> {
-        let values = noise.normals(time_s.len());
+        let values: Vec<f64> = time_s.iter().map(|_| noise.normal()).collect();
         values.into_iter().map(|value| sigma * value).collect()
     };
     let after: [Vec<f64>; 3] = std::array::from_fn(|_| white());
@@ -149,7 +134,7 @@ fn residuals(noise: &mut Noise) -> Residuals {
     }
 }
 
-fn open_loop(noise: &mut Noise) -> OpenLoop {
+fn open_loop(noise: &mut Draw) -> OpenLoop {
     let time_s = times();
     let channels = AXES.iter().enumerate().map(|(axis, name)| {
         let phase = 2.1 * axis as f64;
@@ -178,7 +163,7 @@ fn open_loop(noise: &mut Noise) -> OpenLoop {
     }
 }
 
-fn spectrum(noise: &mut Noise) -> Spectrum {
+fn spectrum(noise: &mut Draw) -> Spectrum {
     let days = 14.0;
     let frequency: Vec<f64> = (0..10_080).map(|bin| f64::from(bin) / days).collect();
     let mut power = |line: f64| -> Vec<f64> {
@@ -223,7 +208,7 @@ fn spectrum(noise: &mut Noise) -> Spectrum {
     }
 }
 
-fn correlation(noise: &mut Noise) -> Correlation {
+fn correlation(noise: &mut Draw) -> Correlation {
     let band = 1.96 / 4320f64.sqrt();
     let mut channel = |name: &str, first: f64| CorrelationChannel {
         name: name.to_owned(),
@@ -242,7 +227,7 @@ fn correlation(noise: &mut Noise) -> Correlation {
     }
 }
 
-fn residual_vs_covariate(noise: &mut Noise) -> ResidualVsCovariate {
+fn residual_vs_covariate(noise: &mut Draw) -> ResidualVsCovariate {
     let time_s = times();
     let mut panels = Vec::new();
     for (row, axis) in AXES.into_iter().enumerate() {
@@ -345,7 +330,7 @@ fn ranking() -> Ranking {
     }
 }
 
-fn cross_validation(noise: &mut Noise) -> CrossValidation {
+fn cross_validation(noise: &mut Draw) -> CrossValidation {
     let time_s: Vec<f64> = (0..1440).map(|row| f64::from(row) * STEP_S).collect();
     let part = |size: f64| -> Vec<f64> {
         let values = time_s
@@ -369,7 +354,7 @@ fn cross_validation(noise: &mut Noise) -> CrossValidation {
     }
 }
 
-fn comparison(noise: &mut Noise) -> Comparison {
+fn comparison(noise: &mut Draw) -> Comparison {
     let estimators = [
         "as printed, Euler steps",
         "plain filter",

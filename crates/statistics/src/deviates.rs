@@ -1,4 +1,10 @@
 //! Random deviates: streams of ChaCha, the same on every machine.
+//!
+//! There are two generators, and neither takes the place of the other: a seed gives the same record and
+//! the same figures for ever. ChaCha12, the standard generator of `rand`, has the simulators, noise that is
+//! added to a record, and permutations of measured stops. ChaCha8, which takes two thirds of its time and is
+//! as random to a statistic, has what methods draw (null distributions, expected sets) and what an
+//! evaluation chooses ([`Draw`]).
 
 use core::f64::consts::TAU;
 
@@ -30,7 +36,7 @@ pub fn polar(generator: &mut impl Rng) -> f64 {
     }
 }
 
-/// Random numbers of one seed and one purpose.
+/// Random numbers of one seed and one purpose, which choose what is simulated.
 #[derive(Debug)]
 pub struct Draw(ChaCha8Rng);
 

@@ -6,7 +6,7 @@ use libm::{log, sincos};
 
 use crate::attitude::Attitude;
 
-/// The generator of a seed and a stream.
+/// The generator of a seed and a stream. ChaCha12: see `gyrocal_statistics::deviates`.
 pub(crate) fn generator(seed: u64, stream: u64) -> ChaCha12Rng {
     let mut generator = ChaCha12Rng::seed_from_u64(seed);
     generator.set_stream(stream);

@@ -20,6 +20,7 @@ pub(super) enum Noise {
 /// Six noises a sample, and three steps of walks when they are asked for.
 #[derive(Debug)]
 pub(super) struct Source {
+    /// ChaCha12: see [`gyrocal_statistics::deviates`].
     generator: ChaCha12Rng,
     noise: Noise,
     before: [f64; 6],

@@ -75,6 +75,7 @@ pub(crate) fn alternatives(
     };
     let fit = data.fit(law)?;
     let fitted = &data.rates - &fit.residuals;
+    // ChaCha12: see `gyrocal_statistics::deviates`.
     let mut generator = ChaCha12Rng::seed_from_u64(seed);
     let mut order: Vec<usize> = (0..data.len()).collect();
     let mut deficits_of_truth: Vec<f64> = (0..DRAWS)

@@ -37,6 +37,7 @@ pub fn negative_controls(
     settings: &SearchSettings,
 ) -> NegativeControls {
     let all: Vec<usize> = (0..positions.time_s.len()).collect();
+    // ChaCha12: see `gyrocal_statistics::deviates`.
     let mut generator = ChaCha12Rng::seed_from_u64(settings.seed);
     generator.set_stream(1);
     let mut order = all.clone();

@@ -150,6 +150,7 @@ pub fn search(
     which: &[usize],
     settings: &SearchSettings,
 ) -> Vec<SearchStep> {
+    // ChaCha12: see `gyrocal_statistics::deviates`.
     let mut generator = ChaCha12Rng::seed_from_u64(settings.seed);
     let mut laws: Vec<Law> = (0..3)
         .map(|gyro| {
