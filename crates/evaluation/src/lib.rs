@@ -81,6 +81,8 @@ mod coefficient_score;
 mod comparison;
 mod effect_family;
 mod error;
+#[cfg(feature = "field")]
+mod field;
 mod injection;
 mod monte_carlo_report;
 mod oracle;
@@ -107,6 +109,11 @@ pub use coefficient_score::CoefficientScore;
 pub use comparison::{ComparisonRow, OWN_METHOD, comparison};
 pub use effect_family::{FamilyRow, families};
 pub use error::EvaluationError;
+#[cfg(feature = "field")]
+pub use field::{
+    Answer, Change, EXEMPT, FieldKind, FieldOutcome, FieldPopulation, FieldRow, Judgement, Right,
+    Silent, VISIBLE, WrongKey,
+};
 pub use injection::{
     InjectedEffect, draw_shape, inject, inject_any, inject_into, inject_one_of, nominal_fit,
     testable_effects,

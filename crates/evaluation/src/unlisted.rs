@@ -230,14 +230,20 @@ impl UnlistedEffect {
         gyro: usize,
         unit: impl Fn(&Moment) -> f64 + Send + Sync + 'static,
     ) -> Self {
+        Self::drift_of(kind.name(), gyro, unit)
+    }
+
+    /// A drift of one gyro, of a kind that is named here.
+    pub(crate) fn drift_of(
+        kind: &str,
+        gyro: usize,
+        unit: impl Fn(&Moment) -> f64 + Send + Sync + 'static,
+    ) -> Self {
         let form = Form::Drift(gyro, Arc::new(unit));
+        let id = format!("{kind} in gyro {}", AXES[gyro]);
         Self {
             form,
-            ..Self::named(
-                format!("{} in gyro {}", kind.name(), AXES[gyro]),
-                true,
-                Vec::new(),
-            )
+            ..Self::named(id, true, Vec::new())
         }
     }
 
@@ -311,10 +317,11 @@ fn odd_period_h(scenario: &Scenario, random: &mut Draw) -> f64 {
     }
 }
 
-/// A function of the past of a specific force, along the motion without the effect.
-struct Series {
-    interval_s: f64,
-    values: Vec<f64>,
+/// Values at the rows of a grid and between them: of a specific force and its past, along the motion without
+/// the effect.
+pub(crate) struct Series {
+    pub(crate) interval_s: f64,
+    pub(crate) values: Vec<f64>,
 }
 
 impl Series {
@@ -344,7 +351,7 @@ impl Series {
         })
     }
 
-    fn at(&self, time_s: f64) -> f64 {
+    pub(crate) fn at(&self, time_s: f64) -> f64 {
         let place = (time_s / self.interval_s).max(0.0);
         let last = self.values.len().saturating_sub(1);
         let row = (place as usize).min(last);

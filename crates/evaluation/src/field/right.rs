@@ -1,0 +1,115 @@
+//! Right answers, as data.
+
+/// The answer that is right for a record, in names: the id of an effect of the catalogue or of its family
+/// (`accel_i.noise`), which stands for its exact equivalents too; the kind of an error of the set-up (`latitude`);
+/// `bench`, a refusal by the reader of the bench file; `several-platforms`; and `unlisted`, which is said by
+/// residuals that are not white or a probability above a half of a cause outside of the catalogue.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Right {
+    /// What the record has: each is told by a name of one of these lists. Nothing, if there are none.
+    pub each: &'static [&'static [&'static str]],
+    /// Names that tell all of it at once.
+    pub whole: &'static [&'static str],
+    /// Names that are not false, but not the answer either.
+    pub near: &'static [&'static str],
+    /// Names that may be told beside.
+    pub beside: &'static [&'static str],
+    /// Whether it is enough that confidence sets hold it; otherwise findings have its names.
+    pub in_set: bool,
+    /// Whether it may be left untold.
+    pub silent: Silent,
+}
+
+/// Records of which nothing need be told.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Silent {
+    /// None.
+    Never,
+    /// Those that show less than [`VISIBLE`].
+    Faint,
+    /// All.
+    Always,
+}
+
+/// Strength from which on a wrong number must be told: the root of twice the log-likelihood that it costs.
+pub const VISIBLE: f64 = 8.0;
+
+pub(super) const UNLISTED: &str = "unlisted";
+pub(super) const BENCH: &str = "bench";
+pub(super) const SEVERAL: &str = "several-platforms";
+
+/// Effects of noise.
+pub(super) const NOISE: &[&str] = &[
+    "accel_i.noise",
+    "gyro_i.noise",
+    "accel.outliers",
+    "accel.coloured_noise",
+    "accel_i.quantisation",
+];
+
+type Names = &'static [&'static str];
+
+impl Right {
+    /// Nothing is to be told.
+    pub const NOTHING: Self = Self {
+        each: &[],
+        whole: &[],
+        near: &[],
+        beside: &[],
+        in_set: false,
+        silent: Silent::Always,
+    };
+
+    /// One name of each list must be told.
+    pub(super) const fn told(each: &'static [Names]) -> Self {
+        Self {
+            each,
+            silent: Silent::Never,
+            ..Self::NOTHING
+        }
+    }
+
+    pub(super) const fn in_set(each: &'static [Names]) -> Self {
+        Self {
+            in_set: true,
+            ..Self::told(each)
+        }
+    }
+
+    pub(super) const fn silent(self, silent: Silent) -> Self {
+        Self { silent, ..self }
+    }
+
+    pub(super) const fn near(self, near: Names) -> Self {
+        Self { near, ..self }
+    }
+
+    pub(super) const fn beside(self, beside: Names) -> Self {
+        Self { beside, ..self }
+    }
+
+    pub(super) const fn or_whole(self, whole: Names) -> Self {
+        Self { whole, ..self }
+    }
+
+    /// The same in words.
+    #[must_use]
+    pub fn words(&self) -> String {
+        if self.each.is_empty() {
+            return "nothing".to_owned();
+        }
+        let each: Vec<String> = self.each.iter().map(|names| names.join(" or ")).collect();
+        let whole: String = self
+            .whole
+            .iter()
+            .map(|name| format!(", or {name}"))
+            .collect();
+        let place = if self.in_set { ", in a set" } else { "" };
+        let silence = match self.silent {
+            Silent::Never => String::new(),
+            Silent::Faint => format!("; nothing below {VISIBLE} sigma"),
+            Silent::Always => "; or nothing".to_owned(),
+        };
+        format!("{}{whole}{place}{silence}", each.join(", and "))
+    }
+}

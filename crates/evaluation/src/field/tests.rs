@@ -1,0 +1,248 @@
+use std::collections::BTreeSet;
+
+use gyrocal_record::{GimbalLimits, Gravity, SiteUncertainty};
+use toml::Value;
+
+use super::judge::Name;
+use super::records::clean;
+use super::*;
+
+#[test]
+fn populations_have_names_and_seeds_of_their_own() {
+    let all = FieldPopulation::all();
+    let names: BTreeSet<String> = all.iter().map(FieldPopulation::name).collect();
+    let seeds: BTreeSet<u64> = all.iter().map(|one| one.first_seed).collect();
+    assert_eq!((names.len(), seeds.len()), (all.len(), all.len()));
+    assert!(seeds.last().unwrap() + APART <= 1_000_000_000);
+    assert!(WrongKey::all().len() >= 60);
+    // The tables do not run into each other.
+    assert!(WrongKey::all().len() as u64 * APART <= KINDS - KEYS);
+}
+
+/// Every number that a bench file can have, by table and key.
+fn numeric_keys() -> BTreeSet<String> {
+    let mut bench = clean(1, 0).bench();
+    // Without `..`: a new field of a bench fails here to build.
+    let Bench {
+        latitude_deg: _,
+        gravity,
+        uncertainty,
+        magnetic_field_gauss,
+        initial_angles_deg,
+        initial_angles_sigma_deg: _,
+        gimbal_limits,
+        accel_noise_g: _,
+        gyro_noise_deg_per_h: _,
+        prior,
+    } = &mut bench;
+    assert!(initial_angles_deg.is_some());
+    *magnetic_field_gauss = Some([0.2; 3]);
+    *gravity = Some(Gravity {
+        local_m_per_s2: 9.8,
+        unit_m_per_s2: 9.8,
+    });
+    *uncertainty = SiteUncertainty {
+        latitude_sigma_deg: Some(1e-3),
+        earth_rate_relative_sigma: Some(1e-8),
+        gravity_relative_sigma: Some(1e-6),
+    };
+    *gimbal_limits = GimbalLimits {
+        deg: [Some([-90.0, 90.0]); 3],
+    };
+    prior.bias_sigma_deg_per_h = [2.0; 3];
+    let text = bench.to_toml("bench.toml".as_ref()).unwrap();
+    let file: toml::Table = text.parse().unwrap();
+    let mut keys = BTreeSet::new();
+    for (table, entries) in &file {
+        for (key, value) in entries.as_table().unwrap() {
+            assert!(matches!(value, Value::Float(_) | Value::Array(_)), "{key}");
+            keys.insert(format!("{table}.{key}"));
+        }
+    }
+    keys
+}
+
+#[test]
+fn every_number_of_a_bench_file_has_a_row_or_a_reason() {
+    let rows = WrongKey::all().into_iter().map(|row| row.key);
+    let columns = ["time_s", "temperature_c"];
+    let rows: BTreeSet<&str> = rows.filter(|key| !columns.contains(key)).collect();
+    let exempt: BTreeSet<&str> = EXEMPT.iter().map(|(key, _)| *key).collect();
+    assert!(rows.is_disjoint(&exempt));
+    let covered: BTreeSet<String> = rows.union(&exempt).map(|key| (*key).to_owned()).collect();
+    assert_eq!(covered, numeric_keys());
+}
+
+#[test]
+fn every_row_changes_its_number_and_nothing_else() {
+    for row in WrongKey::all() {
+        let [(record, bench), (wrong_record, wrong_bench)] = row.record(3).unwrap();
+        let bench = bench.unwrap();
+        let same_record = record == wrong_record;
+        let is_refused = wrong_bench.is_err();
+        let same_bench = wrong_bench.is_ok_and(|wrong| wrong == bench);
+        assert_eq!(row.key.contains('.'), same_record, "{}", row.name());
+        assert_ne!(same_record, same_bench, "{}", row.name());
+        // Only gravity of no place on Earth.
+        assert!(!is_refused || row.name() == "site.local_gravity_m_per_s2 x 1.01");
+    }
+}
+
+#[test]
+fn kinds_make_one_record_of_a_seed() {
+    // Those that need no fit: they are quick.
+    for name in [
+        "the same, up to 30 % of the values missing",
+        "noise of t2.5",
+        "an accelerometer clipped before noise of t4",
+        "the second of two records in m/s^2",
+    ] {
+        let kind = FieldKind::ALL
+            .iter()
+            .find(|kind| kind.name == name)
+            .unwrap();
+        let texts = |seed: u64| {
+            let records = (kind.make)(seed).unwrap().records;
+            let text = |(record, _): &(Record, Bench)| record.to_csv("r.csv".as_ref()).unwrap();
+            records.iter().map(text).collect::<Vec<String>>()
+        };
+        assert_eq!(texts(5), texts(5), "{name}");
+        assert_ne!(texts(5), texts(6), "{name}");
+    }
+}
+
+const LATITUDE: Right = Right {
+    each: &[&["latitude", "site.latitude"]],
+    near: &["accel_i.scale"],
+    beside: &["accel_i.noise"],
+    silent: Silent::Faint,
+    ..Right::NOTHING
+};
+
+fn found(id: &str, set: &[&str]) -> Name {
+    Name {
+        id: id.to_owned(),
+        set: set.iter().map(|id| (*id).to_owned()).collect(),
+        p_value: Some(1e-9),
+    }
+}
+
+fn judged(right: &Right, names: Vec<Name>) -> (Judgement, Answer) {
+    let judged = judge(right, Some(1), false, &Told::named(names));
+    (judged.judgement, judged.answer)
+}
+
+#[test]
+fn a_name_is_right_by_itself_only() {
+    let named = |names| judged(&LATITUDE, names);
+    let (right, not_settled) = (Judgement::Right, Judgement::NotSettled);
+    let set_up = Name::plain("latitude");
+    assert_eq!(
+        named(vec![set_up]),
+        (right, Answer::SetUp("latitude".to_owned()))
+    );
+    // An exact equivalent, and noise beside.
+    let twin = || found("clock.rate", &[]);
+    let answer = Answer::Named("clock.rate".to_owned());
+    assert_eq!(
+        named(vec![found("accel_z.noise", &[]), twin()]),
+        (right, answer.clone())
+    );
+    assert_eq!(
+        named(vec![twin(), found("gyro_x.ramp", &[])]),
+        (not_settled, answer)
+    );
+    let set = found("gyro_x.ramp", &["site.latitude"]);
+    assert_eq!(
+        named(vec![set]),
+        (not_settled, Answer::InSet("gyro_x.ramp".to_owned()))
+    );
+    assert_eq!(named(vec![found("accel_y.scale", &[])]).0, not_settled);
+    assert_eq!(named(vec![Name::plain("unlisted")]).0, not_settled);
+    let physical = Answer::Physical {
+        effect: "gyro_x.ramp".to_owned(),
+        p_value: 1e-9,
+    };
+    let with_walk = vec![found("gyro_z.random_walk", &[]), found("gyro_x.ramp", &[])];
+    assert_eq!(named(with_walk), (Judgement::PhysicalAlone, physical));
+    for other in [found("gyro_z.random_walk", &[]), Name::plain("attitude")] {
+        assert_eq!(named(vec![other]).0, Judgement::Wrong);
+    }
+}
+
+#[test]
+fn silence_is_right_where_the_record_shows_little() {
+    let silent = |right: &Right, faint| judge(right, None, faint, &Told::default());
+    for (right, faint, expected) in [
+        (&LATITUDE, false, Judgement::Wrong),
+        (&LATITUDE, true, Judgement::Right),
+        (&Right::NOTHING, false, Judgement::Right),
+    ] {
+        let judged = silent(right, faint);
+        assert_eq!(
+            (judged.judgement, judged.answer),
+            (expected, Answer::Silent)
+        );
+    }
+    // Where nothing is wrong, nothing may be told.
+    for (name, expected) in [
+        (found("gyro_x.ramp", &[]), Judgement::PhysicalAlone),
+        (found("accel_x.noise", &[]), Judgement::Wrong),
+        (Name::plain("unlisted"), Judgement::NotSettled),
+    ] {
+        assert_eq!(judged(&Right::NOTHING, vec![name]).0, expected);
+    }
+}
+
+#[test]
+fn each_of_several_needs_a_finding_of_its_own_on_its_axis() {
+    const TWO: Right = Right {
+        each: &[&["gyro_i.step"], &["gyro_i.step"]],
+        whole: &["unlisted"],
+        in_set: true,
+        silent: Silent::Never,
+        ..Right::NOTHING
+    };
+    let step = || found("gyro_y.step", &[]);
+    let in_set = || found("gyro_y.random_walk", &["gyro_y.step"]);
+    let of = |names| judged(&TWO, names).0;
+    assert_eq!(of(vec![step(), step()]), Judgement::Right);
+    assert_eq!(of(vec![step(), in_set()]), Judgement::Right);
+    assert_eq!(of(vec![Name::plain("unlisted")]), Judgement::Right);
+    assert_eq!(of(vec![step()]), Judgement::NotSettled);
+    assert_eq!(
+        of(vec![step(), found("gyro_x.ramp", &[])]),
+        Judgement::Wrong
+    );
+    assert_eq!(
+        of(vec![found("gyro_x.step", &[])]),
+        Judgement::PhysicalAlone
+    );
+    assert_eq!(
+        TWO.words(),
+        "gyro_i.step, and gyro_i.step, or unlisted, in a set"
+    );
+}
+
+#[test]
+fn a_wrong_latitude_is_judged_by_its_strength() {
+    let all = FieldPopulation::all();
+    let of = |name: &str| all.iter().find(|one| one.name() == name).unwrap();
+    // Times that begin at another number change nothing.
+    let same = of("time_s +- 3600").run(4).unwrap();
+    assert!(same.strength.unwrap() < 0.1, "{same:?}");
+    assert_eq!(same.answer, Answer::Silent);
+    let row = of("time_s +- 3600").row([&same]);
+    assert_eq!((row.records, row.faint, row.right), (1, 1, 1));
+    let stored = serde_json::to_string(&same).unwrap();
+    assert_eq!(serde_json::from_str::<FieldOutcome>(&stored).unwrap(), same);
+    let [right, wrong] = WrongKey {
+        key: "site.latitude_deg",
+        change: Change::Add,
+        amount: 0.5,
+        right: &LATITUDE,
+    }
+    .record(4)
+    .unwrap();
+    assert!(keys::strength(&[right, wrong]).unwrap().unwrap() > 20.0);
+}
