@@ -1,13 +1,14 @@
 //! Records that a user could have and the simulator does not make, each with the answer that is right for it.
 //!
 //! A [`FieldPopulation`] is a family of records: clean ones with one wrong number in the bench file or in a
-//! column ([`WrongKey`]), or those of one [`FieldKind`]. [`FieldPopulation::run`] makes the record of a seed,
+//! column ([`WrongKey`]), or those of one [`FieldKind`]; a [`PlantKind`] has records of a servo. [`FieldPopulation::run`] makes the record of a seed,
 //! diagnoses it and judges the answer by a [`Right`]; a [`FieldRow`] counts the judgements.
 
 mod injected;
 mod judge;
 mod keys;
 mod kinds;
+mod plants;
 mod records;
 mod right;
 
@@ -25,6 +26,7 @@ pub use judge::{Answer, Judgement};
 use judge::{Told, judge};
 pub use keys::{Change, EXEMPT, WrongKey};
 pub use kinds::FieldKind;
+pub use plants::PlantKind;
 pub use right::{Right, Silent, VISIBLE};
 
 /// First seeds of wrong keys and of kinds, and the distance of populations: all below a billion, where the seeds of
@@ -139,10 +141,21 @@ impl FieldPopulation {
 
     /// Counts outcomes of its records.
     pub fn row<'a>(&self, outcomes: impl IntoIterator<Item = &'a FieldOutcome>) -> FieldRow {
-        let mut row = FieldRow {
-            name: self.name(),
-            right_answer: self.right.words(),
-            ..FieldRow::default()
+        FieldRow::of(self.name(), self.right, outcomes)
+    }
+}
+
+impl FieldRow {
+    /// Counts outcomes of records of a name.
+    pub fn of<'a>(
+        name: String,
+        right: &Right,
+        outcomes: impl IntoIterator<Item = &'a FieldOutcome>,
+    ) -> Self {
+        let mut row = Self {
+            name,
+            right_answer: right.words(),
+            ..Self::default()
         };
         for outcome in outcomes {
             row.records += 1;

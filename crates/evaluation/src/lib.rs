@@ -111,8 +111,8 @@ pub use effect_family::{FamilyRow, families};
 pub use error::EvaluationError;
 #[cfg(feature = "field")]
 pub use field::{
-    Answer, Change, EXEMPT, FieldKind, FieldOutcome, FieldPopulation, FieldRow, Judgement, Right,
-    Silent, VISIBLE, WrongKey,
+    Answer, Change, EXEMPT, FieldKind, FieldOutcome, FieldPopulation, FieldRow, Judgement,
+    PlantKind, Right, Silent, VISIBLE, WrongKey,
 };
 pub use injection::{
     InjectedEffect, draw_shape, inject, inject_any, inject_into, inject_one_of, nominal_fit,

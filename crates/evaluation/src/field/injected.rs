@@ -111,15 +111,16 @@ pub(super) fn accelerometer(seed: u64) -> Result {
     })
 }
 
-/// A turn of the platform in the middle half of the record, and a ramp of 20 sigma beside.
-pub(super) fn knock(seed: u64, angles_deg: [f64; 2], ramp: bool) -> Result {
+/// A turn of the platform in the third quarter of the record, and a ramp of a strength beside, which is far weaker in
+/// what precedes.
+pub(super) fn knock(seed: u64, angles_deg: [f64; 2], ramp: Option<f64>) -> Result {
     let scenario = clean(seed, 0);
     let random = &mut Draw::new(seed, TURNS);
     let axis = [0, 1, 2].map(|_| random.normal());
     let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
     let angle_deg = between(random, angles_deg);
     let [x, y, z] = axis.map(|x| angle_deg * x / length);
-    let onset_s = between(random, [0.25, 0.75]) * scenario.duration_s;
+    let onset_s = between(random, [0.5, 0.75]) * scenario.duration_s;
     let parameters = [
         ("x_deg", x),
         ("y_deg", y),
@@ -127,9 +128,13 @@ pub(super) fn knock(seed: u64, angles_deg: [f64; 2], ramp: bool) -> Result {
         ("onset_s", onset_s),
     ];
     let knock = Hidden::new("platform.knock", &parameters)?;
-    with_effects(seed, scenario, [20.0, 20.0], (false, &[knock]), |_| {
-        ramp.then_some(("gyro_i.ramp", None)).into_iter().collect()
-    })
+    with_effects(
+        seed,
+        scenario,
+        [ramp.unwrap_or(1.0); 2],
+        (false, &[knock]),
+        |_| ramp.map(|_| ("gyro_i.ramp", None)).into_iter().collect(),
+    )
 }
 
 /// A record with a drift of one gyro that the catalogue does not hold, of a strength.

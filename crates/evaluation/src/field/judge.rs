@@ -3,6 +3,8 @@
 use gyrocal::effect::{EffectKind, Enters};
 use gyrocal_diagnosis::result::Finding;
 use gyrocal_diagnosis::{DiagnosisError, DiagnosisResult};
+use gyrocal_plant::PlantError;
+use gyrocal_plant::answer::Diagnosis as PlantDiagnosis;
 use serde::{Deserialize, Serialize};
 
 use super::FieldOutcome;
@@ -62,6 +64,8 @@ pub(super) struct Name {
     pub(super) set: Vec<String>,
     /// `None` of what is no finding.
     pub(super) p_value: Option<f64>,
+    /// Whether it is a cause within the instrument, and neither noise nor an error of the set-up.
+    pub(super) is_physical: bool,
 }
 
 impl Told {
@@ -93,15 +97,45 @@ impl Told {
             .setup
             .iter()
             .map(|problem| Name::plain(&problem.kind));
-        let mut names: Vec<Name> = problems.collect();
-        names.extend(result.findings.iter().map(Name::of));
-        // As `RecordScore::tells_of_another`.
+        let names = problems
+            .chain(result.findings.iter().map(Name::of))
+            .collect();
         let stated = result.causes().filter_map(|cause| cause.none_of_these);
-        let likely = stated.reduce(f64::min).is_some_and(|none| none > 0.5);
-        if result.is_unexplained() || likely {
+        Self::with_unlisted(names, result.is_unexplained(), stated)
+    }
+
+    /// As `RecordScore::tells_of_another`.
+    fn with_unlisted(
+        mut names: Vec<Name>,
+        is_unexplained: bool,
+        stated: impl Iterator<Item = f64>,
+    ) -> Self {
+        if is_unexplained || stated.reduce(f64::min).is_some_and(|none| none > 0.5) {
             names.push(Name::plain(UNLISTED));
         }
         Self::named(names)
+    }
+
+    pub(super) fn of_plant(found: Result<&PlantDiagnosis, &PlantError>) -> Self {
+        match found {
+            Ok(found) => {
+                let named = found.findings.iter().map(|one| {
+                    let rivals = one.rivals.iter().map(|(id, _)| id);
+                    Name {
+                        id: one.effect.clone(),
+                        set: rivals.chain(&one.equivalents).cloned().collect(),
+                        p_value: Some(one.p_value),
+                        is_physical: true,
+                    }
+                });
+                let stated = found.findings.iter().filter_map(|one| one.none_of_these);
+                Self::with_unlisted(named.collect(), !found.unexplained.is_empty(), stated)
+            }
+            Err(error) => Self {
+                error: Some(error.to_string()),
+                ..Self::default()
+            },
+        }
     }
 }
 
@@ -111,6 +145,7 @@ impl Name {
             id: id.to_owned(),
             set: Vec::new(),
             p_value: None,
+            is_physical: false,
         }
     }
 
@@ -121,20 +156,19 @@ impl Name {
             id: finding.effect.clone(),
             set: alternatives.chain(equivalents).cloned().collect(),
             p_value: Some(finding.p_value),
+            is_physical: is_physical(&finding.effect),
         }
     }
+}
 
-    /// Whether it is a cause within the instrument, and neither noise nor an error of the set-up.
-    fn is_physical(&self) -> bool {
-        effect_of(&self.id).is_some_and(|effect| {
-            !effect.is_noise()
-                && effect.kind != EffectKind::InitialState
-                && !matches!(
-                    effect.enters,
-                    Enters::Inputs(_) | Enters::Time | Enters::Filter
-                )
-        })
-    }
+pub(super) fn is_physical(id: &str) -> bool {
+    effect_of(id).is_some_and(|effect| {
+        let is_set_up = matches!(
+            effect.enters,
+            Enters::Inputs(_) | Enters::Time | Enters::Filter
+        );
+        !effect.is_noise() && effect.kind != EffectKind::InitialState && !is_set_up
+    })
 }
 
 /// Whether an id is of a list of names; `i` of a family is `axis`, if that is given, but of noise any.
@@ -156,10 +190,16 @@ pub(super) fn judge(right: &Right, axis: Option<usize>, faint: bool, told: &Told
     let mut free: Vec<usize> = (0..names.len()).collect();
     // Each is told by a finding of its own: by its name, or else by its set.
     let mut tellers: Vec<Option<usize>> = vec![None; right.each.len()];
-    let ways: [&dyn Fn(usize, &[&str]) -> bool; 2] = [&by_name, &by_set];
-    for tells in ways {
+    for named in [true, false] {
         for (teller, list) in tellers.iter_mut().zip(right.each) {
-            let place = free.iter().position(|at| tells(*at, list));
+            let tells = |at: &usize| {
+                if named {
+                    by_name(*at, list)
+                } else {
+                    by_set(*at, list)
+                }
+            };
+            let place = free.iter().position(tells);
             *teller = teller.or_else(|| place.map(|place| free.remove(place)));
         }
     }
@@ -177,7 +217,7 @@ pub(super) fn judge(right: &Right, axis: Option<usize>, faint: bool, told: &Told
     let physical = free
         .iter()
         .map(|at| &names[*at])
-        .find(|name| name.is_physical() && !is_of(&name.id, right.near, axis));
+        .find(|name| name.is_physical && !is_of(&name.id, right.near, axis));
     let may_be_silent = match right.silent {
         Silent::Never => false,
         Silent::Faint => faint,

@@ -7,7 +7,7 @@ use gyrocal_truth::{Scenario, Temperature, simulate};
 use toml::{Table, Value};
 
 use super::records::{SIGNS, clean};
-use super::right::{BENCH, NOISE, Right, Silent};
+use super::right::{BENCH, Right, Silent};
 use crate::error::EvaluationError;
 
 /// A key of a bench file, or a column of a record, with a wrong number.
@@ -46,10 +46,10 @@ const GRAVITY: Right = Right::told(&[&["gravity", "scale", "site.gravity", BENCH
     .near(&["accel_i.scale"])
     .silent(Silent::Faint);
 const ACCEL: Right = Right::told(&[&["accel_i.noise"]])
-    .beside(NOISE)
+    .beside(&["accel_i.noise"])
     .silent(Silent::Faint);
 const GYRO: Right = Right::told(&[&["gyro_i.noise"]])
-    .beside(NOISE)
+    .beside(&["gyro_i.noise"])
     .silent(Silent::Faint);
 /// The coefficients are those of the record all the same.
 const PRIOR: Right = Right::told(&[&["prior"]]).silent(Silent::Always);

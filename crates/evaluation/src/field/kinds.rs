@@ -2,7 +2,7 @@
 
 use super::injected::*;
 use super::records::*;
-use super::right::{NOISE, Right, SEVERAL, Silent, UNLISTED};
+use super::right::{Right, SEVERAL, Silent, UNLISTED};
 
 /// A kind of records.
 #[derive(Clone, Copy, Debug)]
@@ -15,17 +15,19 @@ pub struct FieldKind {
 }
 
 const NONE: Right = Right::NOTHING;
-const OUTLIERS: Right = Right::told(&[&["accel.outliers", "accel_i.noise"]])
-    .beside(NOISE)
-    .silent(Silent::Always);
-const LOUD: Right = Right::told(&[&["accel_i.noise"]]).beside(NOISE);
-const COARSE: Right = Right::told(&[&["accel_i.quantisation"]]).beside(NOISE);
+const TAILS: &[&str] = &["accel.outliers", "accel_i.noise"];
+const OUTLIERS: Right = Right::told(&[TAILS]).beside(TAILS).silent(Silent::Always);
+const LOUD: Right = Right::told(&[&["accel_i.noise"]]).beside(TAILS);
+const COARSE: Right =
+    Right::told(&[&["accel_i.quantisation"]]).beside(&["accel_i.quantisation", "accel_i.noise"]);
 const WALK: &[&str] = &["gyro_i.random_walk"];
 const STEP: Right = Right::in_set(&[&["gyro_i.step"]]).near(WALK);
 const STEPS_2: Right = Right::in_set(&[&["gyro_i.step"], &["gyro_i.step"]]).near(WALK);
 const STEPS_3: Right =
     Right::in_set(&[&["gyro_i.step"], &["gyro_i.step"], &["gyro_i.step"]]).near(WALK);
-const PULSE: Right = STEPS_2.or_whole(&[UNLISTED]);
+const PULSE: Right = STEPS_2
+    .or_whole(&[UNLISTED])
+    .near(&["gyro_i.random_walk", "platform.knock"]);
 const PULSES: Right = Right::in_set(&[&[UNLISTED, "gyro_i.step"]])
     .near(WALK)
     .beside(&[UNLISTED, "gyro_i.step"]);
@@ -49,17 +51,19 @@ const ACCELEROMETER: Right = Right::in_set(&[
 ]);
 const PLATFORMS: Right = Right::told(&[&[SEVERAL]]);
 const TURN_ON: Right = Right::told(&[&["turn-on", SEVERAL]]).near(&["gyro_i.step"]);
-const CLIPPED: Right = Right::told(&[&["clipped"]]).beside(NOISE);
+const CLIPPED: Right = Right::told(&[&["clipped"]]).beside(TAILS);
 const AXES: Right = Right::told(&[&["axes", "jump"]]);
 const CLOCK: Right = Right::told(&[&["clock"]]).near(&["platform.knock"]);
 const CLOCK_JUMP: Right = Right::told(&[&["clock", "jump"]]);
 const CLOCK_RATE: Right = Right::told(&[&["clock", "site.latitude"]])
-    .beside(NOISE)
+    .beside(&["accel_i.noise", "gyro_i.noise"])
     .silent(Silent::Always);
 const KNOCK: Right = Right::told(&[&["jump", "platform.knock"]]);
 const KNOCK_AND_RAMP: Right = Right::in_set(&[&["jump", "platform.knock"], &["gyro_i.ramp"]]);
 const UNIT: Right = Right::told(&[&["unit"]]);
-const MEANS: Right = Right::told(&[&["gravity", "scale"]]).silent(Silent::Always);
+const MEANS: Right = Right::told(&[&["gravity", "scale"]])
+    .near(&["accel_i.scale"])
+    .silent(Silent::Always);
 
 const fn kind(name: &'static str, right: &'static Right, make: fn(u64) -> Result) -> FieldKind {
     FieldKind { name, right, make }
@@ -114,10 +118,10 @@ impl FieldKind {
         kind("the clock jumps by 2 s", &CLOCK, |seed| clock_jump(seed, 2.0)),
         kind("the clock jumps by 3600 s", &CLOCK_JUMP, |seed| clock_jump(seed, 3600.0)),
         kind("the clock 50 ppm fast, jitter of 0.3 s", &CLOCK_RATE, clock_rate),
-        kind("a knock of 5 to 20 deg", &KNOCK, |seed| knock(seed, [5.0, 20.0], false)),
-        kind("a knock of 0.4 deg and a ramp", &KNOCK_AND_RAMP, |seed| knock(seed, [0.4, 0.4], true)),
+        kind("a knock of 5 to 20 deg", &KNOCK, |seed| knock(seed, [5.0, 20.0], None)),
+        kind("a knock of 0.4 deg and a ramp", &KNOCK_AND_RAMP, |seed| knock(seed, [0.4, 0.4], Some(20.0))),
         kind("aligned anew by 40 deg and a ramp", &KNOCK_AND_RAMP, |seed| {
-            knock(seed, [40.0, 40.0], true)
+            knock(seed, [40.0, 40.0], Some(80.0))
         }),
         // two records
         kind("two records of one platform", &NONE, |seed| two(seed, [0.0; 3])),

@@ -38,15 +38,6 @@ pub(super) const UNLISTED: &str = "unlisted";
 pub(super) const BENCH: &str = "bench";
 pub(super) const SEVERAL: &str = "several-platforms";
 
-/// Effects of noise.
-pub(super) const NOISE: &[&str] = &[
-    "accel_i.noise",
-    "gyro_i.noise",
-    "accel.outliers",
-    "accel.coloured_noise",
-    "accel_i.quantisation",
-];
-
 type Names = &'static [&'static str];
 
 impl Right {

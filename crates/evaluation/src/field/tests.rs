@@ -3,7 +3,7 @@ use std::collections::BTreeSet;
 use gyrocal_record::{GimbalLimits, Gravity, SiteUncertainty};
 use toml::Value;
 
-use super::judge::Name;
+use super::judge::{Name, is_physical};
 use super::records::clean;
 use super::*;
 
@@ -124,6 +124,7 @@ fn found(id: &str, set: &[&str]) -> Name {
         id: id.to_owned(),
         set: set.iter().map(|id| (*id).to_owned()).collect(),
         p_value: Some(1e-9),
+        is_physical: is_physical(id),
     }
 }
 
