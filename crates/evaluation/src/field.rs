@@ -194,5 +194,4 @@ fn told(records: &[(Record, Bench)]) -> Told {
 }
 
 #[cfg(test)]
-#[allow(clippy::unwrap_used)]
 mod tests;

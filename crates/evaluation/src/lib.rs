@@ -20,6 +20,10 @@
 //!   targets, detection by family of effects, and the methods side by side. It is the job of
 //!   `gyrocal characterise`.
 //!
+//! With the feature `field`, `FieldPopulation::run` and `PlantKind::run` judge the diagnosis of records that a
+//! user could have and the simulator does not make: clean ones with one wrong number in the bench file, and kinds
+//! from irregular rows to records of two platforms. The right answers are data (`Right`).
+//!
 //! # Strength of an effect
 //!
 //! The strength d of an injected effect is its length in sigmas of its own Cramér–Rao bound:

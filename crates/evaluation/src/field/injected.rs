@@ -2,6 +2,7 @@
 
 use core::f64::consts::TAU;
 
+use gyrocal_record::AXES;
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{Hidden, Moment, Scenario, Temperature, simulate};
 
@@ -38,12 +39,13 @@ fn with_effects(
     let random = &mut Draw::new(seed, EDITS);
     for _ in 0..MAX_DRAWS {
         let axis = axis_of(random);
-        let (own, pair) = [("_x.", "_xy."), ("_y.", "_yz."), ("_z.", "_xz.")][axis];
+        let own = format!("_{}.", AXES[axis]);
+        let pair = ["_xy.", "_yz.", "_xz."][axis];
         let strength = random.log_uniform(strengths);
         let effects = draw(random).into_iter();
         let effects = effects.filter_map(|(id, shape)| {
             Some((
-                effect_of(&id.replace("_i.", own).replace("_ij.", pair))?,
+                effect_of(&id.replace("_i.", &own).replace("_ij.", pair))?,
                 shape,
             ))
         });
@@ -116,7 +118,7 @@ pub(super) fn accelerometer(seed: u64) -> Result {
 pub(super) fn knock(seed: u64, angles_deg: [f64; 2], ramp: Option<f64>) -> Result {
     let scenario = clean(seed, 0);
     let random = &mut Draw::new(seed, TURNS);
-    let axis = [0, 1, 2].map(|_| random.normal());
+    let axis: [f64; 3] = core::array::from_fn(|_| random.normal());
     let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
     let angle_deg = between(random, angles_deg);
     let [x, y, z] = axis.map(|x| angle_deg * x / length);
@@ -172,7 +174,7 @@ pub(super) fn pulses(seed: u64, count: usize) -> Result {
 /// Waves of the day, its half and its third with amplitudes as 20, 14 and 12, of 27 sigma together.
 pub(super) fn harmonics(seed: u64) -> Result {
     with_drift(seed, &clean(seed, 0), 27.0, |random| {
-        let phases = [0, 1, 2].map(|_| TAU * random.uniform());
+        let phases: [f64; 3] = core::array::from_fn(|_| TAU * random.uniform());
         move |moment: &Moment| {
             let day = TAU * moment.time_s / 86_400.0;
             let wave = |size: f64, order: usize| {

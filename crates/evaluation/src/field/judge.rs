@@ -5,6 +5,7 @@ use gyrocal_diagnosis::result::Finding;
 use gyrocal_diagnosis::{DiagnosisError, DiagnosisResult};
 use gyrocal_plant::PlantError;
 use gyrocal_plant::answer::Diagnosis as PlantDiagnosis;
+use gyrocal_record::AXES;
 use serde::{Deserialize, Serialize};
 
 use super::FieldOutcome;
@@ -176,7 +177,7 @@ fn is_of(id: &str, names: &[&str], axis: Option<usize>) -> bool {
     let is_noise = effect_of(id).is_some_and(|effect| matches!(effect.kind, EffectKind::Noise(_)));
     names.iter().any(|name| match axis {
         Some(axis) if name.contains("_i.") && !is_noise => {
-            same_or_equivalent(id, &name.replace("_i.", ["_x.", "_y.", "_z."][axis]))
+            same_or_equivalent(id, &name.replace("_i.", &format!("_{}.", AXES[axis])))
         }
         _ => same_or_equivalent(id, name) || effect_family(id) == *name,
     })

@@ -1,6 +1,6 @@
 //! Makers of records: clean scenarios of the simulator, and edits of what it makes of them.
 
-use gyrocal_record::{Bench, Record};
+use gyrocal_record::{AXES, Bench, Record};
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{Hidden, InitialAttitude, Population, Scenario, Simulation, simulate};
 
@@ -131,7 +131,7 @@ pub(super) fn means(seed: u64) -> Result {
     scenario.interval_s = 60.0;
     let mut simulation = simulate(&scenario)?;
     let mean = |rows: &[[f64; 3]]| {
-        [0, 1, 2].map(|axis| rows.iter().map(|row| row[axis]).sum::<f64>() / COUNT as f64)
+        core::array::from_fn(|axis| rows.iter().map(|row| row[axis]).sum::<f64>() / COUNT as f64)
     };
     let Record {
         time_s, accel_g, ..
@@ -168,7 +168,7 @@ pub(super) fn near_singular(seed: u64) -> Result {
 pub(super) fn coarse_gyros(seed: u64, range_deg_per_h: [f64; 2]) -> Result {
     let random = &mut Draw::new(seed, EDITS);
     plain(seed, |scenario| {
-        let bias = [0, 1, 2].map(|_| random.sign() * random.log_uniform(range_deg_per_h));
+        let bias = core::array::from_fn(|_| random.sign() * random.log_uniform(range_deg_per_h));
         scenario.coefficients.bias_deg_per_h = bias;
         scenario.prior.bias_sigma_deg_per_h = [range_deg_per_h[1]; 3];
     })
@@ -190,7 +190,8 @@ pub(super) fn fine_gyros(seed: u64) -> Result {
 /// A deviate of Student's distribution (Bailey 1994).
 pub(super) fn student(random: &mut Draw, degrees: f64) -> f64 {
     loop {
-        let [u, v] = [0, 1].map(|_| 2.0 * random.uniform() - 1.0);
+        let mut uniform = || 2.0 * random.uniform() - 1.0;
+        let (u, v) = (uniform(), uniform());
         let square = u * u + v * v;
         if square > 0.0 && square < 1.0 {
             return u * (degrees * (libm::pow(square, -2.0 / degrees) - 1.0) / square).sqrt();
@@ -231,7 +232,7 @@ pub(super) fn clipped(seed: u64) -> Result {
 
 pub(super) fn coarse_bits(seed: u64) -> Result {
     let mut scenario = clean(seed, 0);
-    for axis in ["x", "y", "z"] {
+    for axis in AXES {
         let lsb = [("lsb", 20.0 * scenario.accel_noise_g)];
         let id = format!("accel_{axis}.quantisation");
         scenario.hidden.push(Hidden::new(&id, &lsb)?);

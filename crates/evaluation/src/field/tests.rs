@@ -111,6 +111,22 @@ fn kinds_make_one_record_of_a_seed() {
     }
 }
 
+#[test]
+fn every_kind_of_a_plant_has_what_its_name_says() {
+    let all: Vec<_> = PlantKind::ALL.iter().map(|kind| kind.record(6)).collect();
+    for (place, (kind, record)) in PlantKind::ALL.iter().zip(&all).enumerate().skip(1) {
+        // What is hidden under a wrong name changes nothing.
+        assert!(!all[..place].contains(record), "{}", kind.name);
+        assert!(
+            record
+                .outputs
+                .iter()
+                .chain(&record.inputs)
+                .all(|value| value.is_finite())
+        );
+    }
+}
+
 const LATITUDE: Right = Right {
     each: &[&["latitude", "site.latitude"]],
     near: &["accel_i.scale"],

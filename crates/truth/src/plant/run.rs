@@ -63,7 +63,15 @@ pub(super) fn run<const N: usize>(
     let facts = setting.kind.facts();
     // Half the width of the play between the first input, as it is logged, and what acts.
     let play = setting.size("drive.play");
-    let mut noise = Stream::new(setting.seed, 2);
+    // What no catalogue has: correlation of the noise from row to row, noise of the last state per root
+    // second, rows of dead time, feedback of a row's own readings.
+    let correlation = setting.size("noise.correlation");
+    let shaken = setting.size("rate.noise") * libm::sqrt(facts.step_s);
+    let late = setting.size("drive.late_rows") as usize;
+    let is_immediate = setting.size("feedback.same_row") > 0.0;
+    let [mut noise, mut shakes] = [2, 3].map(|purpose| Stream::new(setting.seed, purpose));
+    let fresh = libm::sqrt(1.0 - correlation * correlation);
+    let mut errors = vec![0.0; facts.sigmas.len()];
     let mut state: [f64; N] = core::array::from_fn(|i| setting.initial[i]);
     let mut run = Run::default();
     let mut given = |row: usize, readings: &[f64]| match replayed {
@@ -73,7 +81,8 @@ pub(super) fn run<const N: usize>(
     let mut here = given(0, &vec![0.0; facts.sigmas.len()]);
     let mut behind = here[0];
     for row in 0..setting.rows {
-        let mut acting = here.clone();
+        let earlier = run.inputs.get(row.saturating_sub(late));
+        let mut acting = earlier.unwrap_or(&here).clone();
         if play > 0.0 {
             behind = behind.max(here[0] - play).min(here[0] + play);
             acting[0] = behind;
@@ -85,8 +94,13 @@ pub(super) fn run<const N: usize>(
             state: &state,
             input: &acting,
         });
-        for (reading, sigma) in readings.iter_mut().zip(facts.sigmas) {
-            *reading += setting.noise * sigma * noise.normal();
+        for ((reading, sigma), error) in readings.iter_mut().zip(facts.sigmas).zip(&mut errors) {
+            *error = correlation * *error + fresh * noise.normal();
+            *reading += setting.noise * sigma * *error;
+        }
+        if is_immediate {
+            here = given(row, &readings);
+            acting.clone_from(&here);
         }
         let next = given(row + 1, &readings);
         let end = if facts.interpolate { &next } else { &acting };
@@ -100,6 +114,9 @@ pub(super) fn run<const N: usize>(
             })
         };
         state = step(facts.step_s, state, rates);
+        if shaken > 0.0 {
+            state[N - 1] += shaken * shakes.normal();
+        }
         run.time_s.push(row as f64 * facts.step_s);
         run.inputs.push(core::mem::replace(&mut here, next));
         run.outputs.push(readings);

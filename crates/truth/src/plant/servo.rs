@@ -34,9 +34,19 @@ fn simulate(setting: &Setting, replayed: Option<&[Vec<f64>]>) -> Run {
     let [gain, viscous] = [0, 1].map(|index| setting.parameters[index]);
     let reference = Multisine::new(&mut Stream::new(setting.seed, 1), 0.8, [0.1, 1.5]);
     let size = |effect| setting.size(effect);
+    // What no catalogue has: a gain that fades, or has waves; a reference that is held.
+    let gain_at = |share: f64| {
+        let wave = libm::sin(9.0 * core::f64::consts::TAU * share);
+        gain * (1.0 - size("a.fade") * share + size("a.wave") * wave)
+    };
+    let held_s = size("feedback.same_row");
+    let reference_at = |time_s: f64| match held_s > 0.0 {
+        true => reference.at(libm::floor(time_s / held_s) * held_s),
+        false => reference.at(time_s),
+    };
     let rates = |at: &Moment<'_, 2>| {
         let ([angle, rate], drive) = (*at.state, at.input[0]);
-        let motor = (gain + setting.step("a.step", at.share)) * drive;
+        let motor = (gain_at(at.share) + setting.step("a.step", at.share)) * drive;
         let friction = (viscous + setting.step("b.step", at.share)) * rate;
         let extra = size("rate_rate.sign(rate)") * libm::tanh(rate / STICTION)
             + size("rate_rate.rate|rate|") * rate * rate.abs()
@@ -50,6 +60,6 @@ fn simulate(setting: &Setting, replayed: Option<&[Vec<f64>]>) -> Run {
         let lag_s = size("y.lag");
         vec![angle - lag_s * rate + 0.5 * lag_s * lag_s * rates(at)[1]]
     };
-    let feedback = |time_s: f64, readings: &[f64]| vec![2.0 * (reference.at(time_s) - readings[0])];
+    let feedback = |time_s: f64, readings: &[f64]| vec![2.0 * (reference_at(time_s) - readings[0])];
     run(setting, rates, outputs, feedback, replayed)
 }

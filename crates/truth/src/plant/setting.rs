@@ -73,7 +73,7 @@ pub struct Setting {
     pub parameters: Vec<f64>,
     /// Initial states.
     pub initial: Vec<f64>,
-    /// The hidden effect and its size.
+    /// The hidden effect and its size: one of [`Facts::effects`], or what no catalogue has.
     pub hidden: (&'static str, f64),
     /// Share of the record at which a step begins.
     pub onset: f64,
