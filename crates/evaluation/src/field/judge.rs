@@ -150,6 +150,10 @@ impl Name {
         }
     }
 
+    fn is_set_up(&self) -> bool {
+        self.p_value.is_none() && self.id != UNLISTED
+    }
+
     fn of(finding: &Finding) -> Self {
         let alternatives = finding.alternatives.iter().map(|other| &other.effect);
         let equivalents = finding.equivalents.iter().map(|other| &other.effect);
@@ -241,7 +245,7 @@ pub(super) fn judge(right: &Right, axis: Option<usize>, faint: bool, told: &Told
     let id = |at: usize| names[at].id.clone();
     let answer = match (teller, physical, &told.error) {
         (_, _, Some(error)) => Answer::Error(error.clone()),
-        (Some(at), ..) if names[at].p_value.is_none() => Answer::SetUp(id(at)),
+        (Some(at), ..) if names[at].is_set_up() => Answer::SetUp(id(at)),
         (Some(at), ..) if is_named => Answer::Named(id(at)),
         (Some(at), ..) => Answer::InSet(id(at)),
         (None, Some(name), _) => Answer::Physical {

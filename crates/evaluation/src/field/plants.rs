@@ -46,7 +46,7 @@ impl PlantKind {
         kind("servo: noise of the rate", &NOISY, ("rate.noise", 0.005)),
         kind("servo: noise of a tenth on the logged input", &NOISY, (LOGGED, 0.1)),
         kind("servo: feedback of a row's own reading", &NONE, ("feedback.same_row", 0.8)),
-        kind("servo: a dead time of 0.16 s", &DELAY, ("drive.late_rows", 8.0)),
+        kind("servo: a dead time of 0.04 s", &DELAY, ("drive.late_rows", 2.0)),
         kind("servo: a gain that fades by a fifth", &FADE, ("a.fade", 0.2)),
         kind("servo: a gain with waves of a tenth", &WAVE, ("a.wave", 0.1)),
     ];
