@@ -75,6 +75,8 @@ pub enum Statistic {
     Median(Vec<f64>),
     /// The ratio of the means of two numbers a record.
     Ratio(Vec<[f64; 2]>),
+    /// The ratio of the root mean squares of two numbers a record.
+    RmsRatio(Vec<[f64; 2]>),
     /// A number without scatter, and its number of runs.
     Value(f64, u64),
 }
@@ -122,6 +124,7 @@ impl Statistic {
             Self::Mean(values) => mean(values),
             Self::Median(values) => median(values),
             Self::Ratio(pairs) => mean(column(pairs, 0)) / mean(column(pairs, 1)),
+            Self::RmsRatio(pairs) => Self::Ratio(squares(pairs)).value().sqrt(),
             Self::Value(value, _) => *value,
         }
     }
@@ -151,7 +154,7 @@ impl Statistic {
             Self::Average(all) => all.iter().map(|share| share.trials).sum(),
             Self::Least(all) => least(all).map_or(0, |least| least.trials),
             Self::Mean(values) | Self::Median(values) => values.len() as u64,
-            Self::Ratio(pairs) => pairs.len() as u64,
+            Self::Ratio(pairs) | Self::RmsRatio(pairs) => pairs.len() as u64,
             Self::Value(_, runs) => *runs,
         }
     }
@@ -194,7 +197,12 @@ impl Statistic {
                 };
                 Judgement::of(met, all.iter().any(missed))
             }
-            Self::Ratio(pairs) => self.ratio_judged(pairs, target, full),
+            Self::Ratio(pairs) => ratio_judged(pairs, target.range(), full),
+            Self::RmsRatio(pairs) => {
+                // Both sides squared; a limit below zero is none.
+                let range = target.range().map(|limit| limit * limit.abs());
+                ratio_judged(&squares(pairs), range, full)
+            }
             Self::Share(share) if share.trials > 0 => judged(Range::exact(share), target, full),
             Self::Average(all) => judged(
                 Range::normal(self.value(), sigma_of_average(all)),
@@ -211,29 +219,35 @@ impl Statistic {
             Self::Share(_) | Self::Mean(_) | Self::Median(_) => Judgement::TooFew,
         }
     }
+}
 
-    /// The mean of one number less the limit times the mean of the other is normal over tens of records.
-    fn ratio_judged(&self, pairs: &[[f64; 2]], target: Target, full: bool) -> Judgement {
-        if pairs.len() < 2 {
-            return Judgement::TooFew;
-        }
-        let [least, most] = target.range();
-        let side = |limit: f64, sign: f64| {
-            let excess = pairs.iter().map(|pair| sign * (pair[0] - limit * pair[1]));
-            let excess: Vec<f64> = excess.collect();
-            let range = Range::normal(mean(&excess), standard_error(&excess));
-            judged(range, Target::AtMost(0.0), full)
-        };
-        let sides = [(least, -1.0), (most, 1.0)].into_iter();
-        let judgements: Vec<Judgement> = sides
-            .filter(|(limit, _)| limit.is_finite())
-            .map(|(limit, sign)| side(limit, sign))
-            .collect();
-        Judgement::of(
-            judgements.iter().all(|one| *one == Judgement::Met),
-            judgements.contains(&Judgement::Missed),
-        )
+/// The mean of one number less the limit times the mean of the other is normal over tens of records.
+fn ratio_judged(pairs: &[[f64; 2]], [least, most]: [f64; 2], full: bool) -> Judgement {
+    if pairs.len() < 2 {
+        return Judgement::TooFew;
     }
+    let side = |limit: f64, sign: f64| {
+        let excess = pairs.iter().map(|pair| sign * (pair[0] - limit * pair[1]));
+        let excess: Vec<f64> = excess.collect();
+        let range = Range::normal(mean(&excess), standard_error(&excess));
+        judged(range, Target::AtMost(0.0), full)
+    };
+    let sides = [(least, -1.0), (most, 1.0)].into_iter();
+    let judgements: Vec<Judgement> = sides
+        .filter(|(limit, _)| limit.is_finite())
+        .map(|(limit, sign)| side(limit, sign))
+        .collect();
+    Judgement::of(
+        judgements.iter().all(|one| *one == Judgement::Met),
+        judgements.contains(&Judgement::Missed),
+    )
+}
+
+fn squares(pairs: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    pairs
+        .iter()
+        .map(|pair| pair.map(|value| value * value))
+        .collect()
 }
 
 /// A range against a target.

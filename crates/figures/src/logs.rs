@@ -4,46 +4,61 @@ mod allan;
 mod oracle;
 mod positions;
 mod rates;
-mod rates_simulation;
 pub(crate) mod records;
 mod stops;
+mod unit;
 mod vertical;
 
+use gyrocal_instruments::{Description, InstrumentError};
 use gyrocal_statistics::Proportion;
 
 use crate::error::Error;
-use crate::figure::{Figure, coverage};
-use crate::truth::Extent;
+use crate::figure::Figure;
+use crate::harness::{Context, Population};
+use crate::topics::{INSTRUMENTS, of};
 
-/// Range of a coverage of 95 %.
-const COVERAGE: [f64; 2] = [0.93, 0.97];
-
-/// Cells of fewer intervals hold if the exact 99.9 % interval of their coverage contains 95 %.
-const LARGE_CELL: usize = 1000;
-
-/// All figures of the topic.
-pub(crate) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
-    let mut figures = allan::figures(extent)?;
-    figures.extend(positions::figures(extent)?);
-    figures.extend(stops::figures(extent)?);
-    figures.extend(vertical::figures(extent)?);
-    figures.extend(rates::figures(extent)?);
+/// All figures of the part.
+pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
+    let mut figures = allan::figures(context)?;
+    figures.extend(positions::figures(context)?);
+    figures.extend(stops::figures(context)?);
+    figures.extend(vertical::figures(context)?);
+    figures.extend(rates::figures(context)?);
     Ok(figures)
 }
 
-/// Share of 95 % intervals that contain the truth.
-fn covered(name: &str, hits: impl IntoIterator<Item = bool>, seeds: &str, small: bool) -> Figure {
-    let share = Proportion::of(hits);
-    let count = share.trials as usize;
-    let mut figure = Figure::within(name, COVERAGE, share.share()).of_share(share);
-    let judgement = coverage(share, COVERAGE);
-    if small {
-        figure = figure.judged(judgement);
-    } else if count < LARGE_CELL {
-        figure.holds = Some(judgement != gyrocal_statistics::Judgement::Missed);
+/// A population of logs: its name, its first seed, and its numbers of records, full and small.
+fn logs<'a, R, E: Into<Error>>(
+    name: &str,
+    [first, full, small]: [u64; 3],
+    job: impl Fn(u64) -> Result<R, E> + Sync + 'a,
+) -> Population<'a, R> {
+    Population {
+        name: format!("logs {name}"),
+        first,
+        full,
+        small,
+        sources: of(
+            INSTRUMENTS,
+            &["crates/figures/src/logs.rs", "crates/figures/src/logs"],
+        ),
+        job: Box::new(move |seed| job(seed).map_err(Into::into)),
     }
-    figure.over(count, seeds)
 }
+
+/// The description of a log in rad/s and g, with more tables.
+fn described(rate_hz: f64, latitude_deg: f64, more: &str) -> Result<Description, InstrumentError> {
+    let text = format!(
+        "[time]\nrate_hz = {rate_hz}\n[gyro]\ncolumns = [\"a\", \"b\", \"c\"]\nunit = \"rad/s\"\n[accel]\n\
+         columns = [\"d\", \"e\", \"f\"]\nunit = \"g\"\n{more}[site]\nlatitude_deg = {latitude_deg:?}\n"
+    );
+    Ok(Description::parse(&text, "log.toml")?)
+}
+
+/// Most error and sigma of an estimate over those of projection alone, and its reason.
+const OVER_PROJECTION: f64 = 1.05;
+const OVER_PROJECTION_REASON: &str =
+    "no worse than the simpler way, but for what the noise of a log costs to estimate";
 
 /// Share that is to be at least a target.
 fn at_least(

@@ -207,7 +207,7 @@ pub(crate) const TOPICS: [Topic; 8] = [
                     INSTRUMENTS,
                     &["crates/figures/src/logs.rs", "crates/figures/src/logs"],
                 ),
-                |to| logs::figures(Extent::of(to)),
+                logs::figures,
             ),
             part(
                 "measured",

@@ -45,8 +45,8 @@ impl UnitErrors {
         draw: &mut Draw,
     ) -> [[f64; 3]; 2] {
         let squares = self.gyro_gg.component_mul(&force.component_mul(&force));
-        let gyro =
-            rate + self.gyro_bias + self.gyro_g * force + squares + self.gyro_noise * vector(draw);
+        let law = rate + self.gyro_bias + self.gyro_g * force + squares;
+        let gyro = law + self.gyro_noise * vector(draw);
         let accel = self.accel_bias + self.accel_matrix * force + self.accel_noise * vector(draw);
         [gyro.into(), accel.into()]
     }
@@ -64,10 +64,7 @@ pub fn positions(count: usize, draw: &mut Draw) -> Vec<Vector3<f64>> {
     faces
         .chain(edges)
         .take(count)
-        .map(|force| {
-            let tilt = 0.02 * vector(draw);
-            (force.normalize() + tilt).normalize()
-        })
+        .map(|force| (force.normalize() + 0.02 * vector(draw)).normalize())
         .collect()
 }
 
@@ -179,6 +176,7 @@ impl Shake {
     }
 }
 
-fn vector(draw: &mut Draw) -> Vector3<f64> {
+/// Three normal deviates.
+pub fn vector(draw: &mut Draw) -> Vector3<f64> {
     Vector3::new(draw.normal(), draw.normal(), draw.normal())
 }

@@ -7,7 +7,7 @@
 use gyrocal_statistics::deviates::Normals;
 
 /// Noise of a gyro at rest, sampled each second, by the coefficients of IEEE Std 952.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct SensorNoise {
     /// Q: standard deviation of the white noise of the angle.
     pub quantisation: f64,
@@ -22,9 +22,10 @@ pub struct SensorNoise {
 }
 
 /// Filter of unit gain at rest.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub enum Filter {
     /// None: each sample is the mean rate over its second.
+    #[default]
     None,
     /// First order with a time constant in samples.
     Lag(f64),

@@ -154,6 +154,15 @@ fn ratios_are_of_means() {
 }
 
 #[test]
+fn ratios_of_root_mean_squares_have_no_signs() {
+    let errors = Statistic::RmsRatio(vec![[3.0, 1.0], [-1.0, 2.0], [-2.0, 1.0], [2.0, -3.0]]);
+    assert!((errors.value() - (18.0_f64 / 15.0).sqrt()).abs() < 1e-15);
+    assert_eq!(holds(&errors, Target::AtMost(1.1), true), Some(true));
+    let band = Target::Between([4.0, 5.0]);
+    assert_eq!(holds(&errors, band, true), Some(false));
+}
+
+#[test]
 fn medians_and_means_have_their_scatter() {
     let values: Vec<f64> = (0..101).map(f64::from).collect();
     let median = Statistic::Median(values.clone());

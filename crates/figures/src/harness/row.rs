@@ -79,6 +79,16 @@ impl<'a, R> Row<'a, R> {
         })
     }
 
+    /// The ratio of the root mean squares of two numbers a record.
+    pub(crate) fn rms_ratio(
+        name: impl Into<String>,
+        of: impl Fn(&R) -> Option<[f64; 2]> + 'a,
+    ) -> Self {
+        Self::new(name, move |records| {
+            Statistic::RmsRatio(records.iter().filter_map(&of).collect())
+        })
+    }
+
     /// Words about all records, without a target.
     pub(crate) fn words(name: impl Into<String>, of: impl Fn(&[R]) -> String + 'a) -> Self {
         Self {

@@ -1,30 +1,22 @@
 //! Coefficients of the noise of gyros at rest, from Allan deviations.
 
+use gyrocal_evaluation::Statistic;
 use gyrocal_statistics::allan::{NoiseFit, NoisePart, allan_deviation, fit_noise, octaves};
 use gyrocal_statistics::deviates::Draw;
-use gyrocal_statistics::{NORMAL_97_5, Proportion, StatisticsError, root_mean_square};
+use gyrocal_statistics::{NORMAL_97_5, StatisticsError};
 use gyrocal_testkit::sensor_noise::{Filter, SensorNoise};
 use serde::{Deserialize, Serialize};
 
-use super::covered;
+use super::logs;
 use crate::error::Error;
 use crate::figure::Figure;
-use crate::resumable;
-use crate::truth::Extent;
+use crate::harness::{COVERAGE, COVERAGE_REASON, Context, Row};
 
 /// Purpose of the stream of draws.
 const LEVELS: u64 = 1801;
 
-const FIRST_SEED: u64 = 810_000;
-const RECORDS: u64 = 500;
-const SMALL: u64 = 12;
-
 /// Samples of a record.
 const SAMPLES: [f64; 2] = [3e3, 2e4];
-const SAMPLES_SMALL: [f64; 2] = [3e3, 5e3];
-
-/// Range of the rms of the differences between halves in their standard deviations.
-const HALVES: [f64; 2] = [0.9, 1.1];
 
 /// Result for one record.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -38,69 +30,63 @@ struct Record {
     halves: [Option<f64>; 4],
 }
 
-pub(super) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
-    let small = extent.small;
-    let seeds = FIRST_SEED..FIRST_SEED + extent.records(RECORDS, SMALL);
-    let campaign = resumable::campaign("logs", "allan", seeds.clone(), small)?;
-    let samples = if small { SAMPLES_SMALL } else { SAMPLES };
-    let outcome = campaign.run(|seed| record(seed, samples), |_| ())?;
-    let records: Vec<&Record> = outcome.successes().map(|(_, record)| record).collect();
-    let seeds = format!("{seeds:?}");
-    let mut figures = Vec::new();
+pub(super) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
+    context.measure(&logs("allan", [810_000, 500, 12], record), &rows())
+}
+
+fn rows() -> Vec<Row<'static, Record>> {
+    let mut rows = Vec::new();
     for (index, part) in NoisePart::ALL.into_iter().enumerate() {
         let name = format!("Allan, {}: coverage of 95 % intervals", part.description());
-        let hits = records.iter().filter_map(|record| record.covered[index]);
-        figures.push(covered(&name, hits, &seeds, small));
+        rows.push(Row::share(name, move |one: &Record| one.covered[index]));
     }
-    for filtered in [false, true] {
-        let kind = if filtered { "filtered" } else { "not filtered" };
+    for (filtered, kind) in [(false, "not filtered"), (true, "filtered")] {
         let name = format!("Allan, all parts, records {kind}: coverage of 95 % intervals");
-        let of_kind = records.iter().filter(|record| record.filtered == filtered);
-        let hits = of_kind.flat_map(|record| record.covered.iter().flatten().copied());
-        figures.push(covered(&name, hits, &seeds, small));
+        rows.push(Row::each(name, move |one: &Record| {
+            let own = if one.filtered == filtered { 4 } else { 0 };
+            one.covered.into_iter().take(own).flatten()
+        }));
     }
-    let halves: Vec<f64> = records
-        .iter()
-        .flat_map(|r| r.halves.iter().flatten().copied())
-        .collect();
-    let rms = root_mean_square(halves.iter().copied());
-    let name = "Allan, between halves of one record: rms z of parts told within a half";
-    let mut figure = Figure::within(name, HALVES, rms).over(halves.len(), seeds.as_str());
-    if small {
-        figure.holds = None;
-        figure.too_few = true;
-    }
-    figures.push(figure);
-    let of_kind = |filtered: bool| {
-        let of_kind = records
+    let cover = |row: Row<'static, Record>| row.between(COVERAGE, COVERAGE_REASON);
+    let mut rows: Vec<Row<'_, Record>> = rows.into_iter().map(cover).collect();
+    let halves = |records: &[Record]| {
+        let halves = records
             .iter()
-            .filter(move |record| record.filtered == filtered);
-        Proportion::of(of_kind.map(|record| record.correlated))
+            .flat_map(|one| one.halves.into_iter().flatten());
+        Statistic::RmsRatio(halves.map(|z| [z, 1.0]).collect())
     };
-    figures.push(Figure::note_share(
-        "Allan, filtered records whose samples are told to be correlated",
-        of_kind(true),
-        seeds.as_str(),
-    ));
-    figures.push(Figure::note_share(
-        "Allan, the same of records that are not filtered",
-        of_kind(false),
-        seeds.as_str(),
-    ));
-    let told = records.iter().map(|record| record.covered[1].is_some());
-    figures.push(Figure::note_share(
-        "Allan, records with coefficients: the others are told to be no sum of the parts",
-        Proportion::of(told),
-        seeds,
-    ));
-    Ok(figures)
+    let of_kind =
+        |filtered: bool| move |one: &Record| (one.filtered == filtered).then_some(one.correlated);
+    rows.extend([
+        Row::new(
+            "Allan, between halves of one record: rms z of parts told within a half",
+            halves,
+        )
+        .between(
+            [0.9, 1.1],
+            "one is expected; a tenth of sigma for the normal shape of intervals",
+        ),
+        Row::share(
+            "Allan, filtered records whose samples are told to be correlated",
+            of_kind(true),
+        ),
+        Row::share(
+            "Allan, the same of records that are not filtered",
+            of_kind(false),
+        ),
+        Row::share(
+            "Allan, records with coefficients: the others are told to be no sum of the parts",
+            |one: &Record| Some(one.covered[1].is_some()),
+        ),
+    ]);
+    rows
 }
 
 /// A record of 1 Hz with an angle random walk of one. Crossovers of the parts are uniform in the logarithm
 /// of the averaging time, many of them beyond the record.
-fn record(seed: u64, samples: [f64; 2]) -> Result<Record, StatisticsError> {
+fn record(seed: u64) -> Result<Record, StatisticsError> {
     let mut draw = Draw::new(seed, LEVELS);
-    let count = draw.log_uniform(samples);
+    let count = draw.log_uniform(SAMPLES);
     let quantised = draw.log_uniform([0.3, 30.0]);
     let quantisation = if draw.uniform() < 0.5 {
         quantised / 3.0_f64.sqrt()

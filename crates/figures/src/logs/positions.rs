@@ -1,30 +1,25 @@
 //! Tests of six and of twelve positions.
 
 use gyrocal_instruments::multi_position::{Term, few_position_test, prepare_logs};
-use gyrocal_instruments::{Description, InstrumentError, Log};
+use gyrocal_instruments::{InstrumentError, Log};
 use gyrocal_record::AXES;
+use gyrocal_statistics::NORMAL_97_5;
 use gyrocal_statistics::deviates::Draw;
-use gyrocal_statistics::{NORMAL_97_5, Proportion};
-use gyrocal_testkit::position_test::{UnitErrors, positions, stop};
+use gyrocal_testkit::position_test::{UnitErrors, positions, stop, vector};
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 
-use super::{at_least, covered};
+use super::unit::{DEG_PER_H, EARTH_DEG_PER_H};
+use super::{described, logs};
 use crate::error::Error;
 use crate::figure::Figure;
-use crate::resumable;
-use crate::truth::Extent;
+use crate::harness::{COVERAGE, COVERAGE_REASON, Context, Row};
 
 /// Purpose of the stream of draws.
 const ERRORS: u64 = 1804;
 
-const RECORDS: u64 = 300;
-const SMALL: u64 = 30;
 const RATE_HZ: f64 = 50.0;
 const STOP_S: f64 = 60.0;
-
-const DEG_PER_H: f64 = core::f64::consts::PI / 180.0 / 3600.0;
-const EARTH_DEG_PER_H: f64 = 15.041_07;
 
 /// Sizes of a hidden term in its standard deviations.
 const SIZES: [f64; 2] = [8.0, 16.0];
@@ -41,48 +36,53 @@ struct Test {
     accelerometers: Vec<bool>,
 }
 
-pub(super) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
-    let small = extent.small;
+pub(super) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
     let mut figures = Vec::new();
-    for (count, first_seed) in [(6, 820_000), (12, 830_000)] {
-        let seeds = first_seed..first_seed + extent.records(RECORDS, SMALL);
-        let cell = format!("positions-{count}");
-        let campaign = resumable::campaign("logs", &cell, seeds.clone(), small)?;
-        let outcome = campaign.run(|seed| test(count, seed), |_| ())?;
-        let tests: Vec<&Test> = outcome.successes().map(|(_, test)| test).collect();
-        let seeds = format!("{seeds:?}");
-        let of = |name: &str| format!("{count} positions: {name}");
-        let hits = tests.iter().flat_map(|test| test.gyros.iter().copied());
-        let name = of("coverage of coefficients of the gyros");
-        figures.push(covered(&name, hits, &seeds, small));
-        let hits = tests
-            .iter()
-            .flat_map(|test| test.accelerometers.iter().copied());
-        let name = of("coverage of coefficients of the accelerometers");
-        figures.push(covered(&name, hits, &seeds, small));
-        let with = tests
-            .iter()
-            .filter_map(|test| Some((test, test.hidden.as_ref()?)));
-        let named = with
-            .clone()
-            .map(|(test, hidden)| test.found.iter().any(|names| names.contains(hidden)));
-        let name = of("g terms of d = 8 to 16 named, alone or in a set");
-        figures.push(at_least(&name, 0.95, named, &seeds, small));
-        let first = with.map(|(test, hidden)| {
-            test.found.first().and_then(|names| names.first()) == Some(hidden)
-        });
-        let share = Proportion::of(first);
-        figures.push(Figure::note_share(
-            &of("the same, the first name"),
-            share,
-            seeds.as_str(),
-        ));
-        let clean = tests.iter().filter(|test| test.hidden.is_none());
-        let clean = clean.map(|test| test.found.is_empty());
-        let name = of("clean tests without a finding");
-        figures.push(at_least(&name, 0.98, clean, &seeds, small));
+    for (count, first) in [(6, 820_000), (12, 830_000)] {
+        let population = logs(
+            &format!("positions-{count}"),
+            [first, 300, 30],
+            move |seed| test(count, seed),
+        );
+        figures.extend(context.measure(&population, &rows(count))?);
     }
     Ok(figures)
+}
+
+fn rows(count: usize) -> [Row<'static, Test>; 5] {
+    let of = |name: &str| format!("{count} positions: {name}");
+    let first = |test: &Test| {
+        let hidden = test.hidden.as_ref()?;
+        Some(test.found.first().and_then(|names| names.first()) == Some(hidden))
+    };
+    [
+        Row::each(
+            of("coverage of coefficients of the gyros"),
+            |test: &Test| test.gyros.clone(),
+        )
+        .between(COVERAGE, COVERAGE_REASON),
+        Row::each(
+            of("coverage of coefficients of the accelerometers"),
+            |test: &Test| test.accelerometers.clone(),
+        )
+        .between(COVERAGE, COVERAGE_REASON),
+        Row::share(
+            of("g terms of d = 8 to 16 named, alone or in a set"),
+            |test: &Test| {
+                let hidden = test.hidden.as_ref()?;
+                Some(test.found.iter().any(|names| names.contains(hidden)))
+            },
+        )
+        .at_least(0.95, "sets of 95 %"),
+        Row::share(of("the same, the first name"), first),
+        Row::share(of("clean tests without a finding"), |test: &Test| {
+            test.hidden.is_none().then_some(test.found.is_empty())
+        })
+        .at_least(
+            0.98,
+            "the level is 1 %, and one more for standard errors that are estimated",
+        ),
+    ]
 }
 
 /// A unit of ordinary errors in positions as somebody sets them, one log each, with a term across in
@@ -93,13 +93,12 @@ fn test(count: usize, seed: u64) -> Result<Test, InstrumentError> {
     let latitude_deg = 120.0 * draw.uniform() - 60.0;
     let (sine, cosine) = latitude_deg.to_radians().sin_cos();
     let noise = draw.log_uniform([2e-3, 1e-2]);
-    let unit = unit(noise, &mut draw);
+    let mut unit = unit(noise, &mut draw);
     let forces = positions(count, &mut draw);
     let hidden = (draw.uniform() < 0.5).then(|| {
         let gyro = (3.0 * draw.uniform()) as usize;
         (gyro, (gyro + 1 + (2.0 * draw.uniform()) as usize) % 3)
     });
-    let mut unit = unit;
     if let Some((gyro, axis)) = hidden {
         let of_noise = noise / DEG_PER_H / (samples as f64).sqrt();
         // A random heading adds half of the squared horizontal Earth rate at most.
@@ -110,19 +109,13 @@ fn test(count: usize, seed: u64) -> Result<Test, InstrumentError> {
         unit.gyro_g[(gyro, axis)] = draw.sign() * size * sigma / squares.sqrt() * DEG_PER_H;
     }
     let earth = [sine, cosine].map(|part| part * EARTH_DEG_PER_H * DEG_PER_H);
-    let logs: Vec<_> = forces
-        .iter()
-        .map(|force| {
-            let made = stop(&unit, *force, samples, earth, &mut draw);
-            let log = Log::from_samples(1.0 / RATE_HZ, made.gyro, made.accel);
-            (log, made.stops)
-        })
-        .collect();
-    let text = format!(
-        "[time]\nrate_hz = {RATE_HZ}\n[gyro]\ncolumns = [\"a\", \"b\", \"c\"]\nunit = \"rad/s\"\n\
-         [accel]\ncolumns = [\"d\", \"e\", \"f\"]\nunit = \"g\"\n[site]\nlatitude_deg = {latitude_deg:?}\n"
-    );
-    let prepared = prepare_logs(&logs, &Description::parse(&text, "log.toml")?)?;
+    let made = |force: &Vector3<f64>| {
+        let made = stop(&unit, *force, samples, earth, &mut draw);
+        let log = Log::from_samples(1.0 / RATE_HZ, made.gyro, made.accel);
+        (log, made.stops)
+    };
+    let logs: Vec<_> = forces.iter().map(made).collect();
+    let prepared = prepare_logs(&logs, &described(RATE_HZ, latitude_deg, "")?)?;
     let report = few_position_test(&prepared.positions, 0.01)?;
     let contains =
         |truth: f64, estimate: f64, sigma: f64| (estimate - truth).abs() <= NORMAL_97_5 * sigma;
@@ -141,13 +134,13 @@ fn test(count: usize, seed: u64) -> Result<Test, InstrumentError> {
         let all = all.filter(|(coefficient, _)| coefficient.determined);
         all.map(|(coefficient, truth)| contains(*truth, coefficient.estimate, coefficient.sigma))
     });
-    let name = |axis: usize| AXES[axis];
+
     let found = report.findings.iter().map(|finding| {
         let names = core::iter::once(&finding.effect).chain(&finding.alternatives);
         names.cloned().collect()
     });
     Ok(Test {
-        hidden: hidden.map(|(gyro, axis)| format!("gyro_{}.g_{}", name(gyro), name(axis))),
+        hidden: hidden.map(|(gyro, axis)| format!("gyro_{}.g_{}", AXES[gyro], AXES[axis])),
         found: found.collect(),
         gyros: of_gyros.collect(),
         accelerometers: of_accelerometers.collect(),
@@ -155,7 +148,7 @@ fn test(count: usize, seed: u64) -> Result<Test, InstrumentError> {
 }
 
 fn unit(noise: f64, draw: &mut Draw) -> UnitErrors {
-    let mut vector = |size: f64| Vector3::new(draw.normal(), draw.normal(), draw.normal()) * size;
+    let mut vector = |size: f64| vector(draw) * size;
     // Misalignments as large as the calibration expects them to be.
     let (scale, misalignment) = (vector(0.005), vector(0.01));
     let mut accel_matrix = Matrix3::from_diagonal(&(Vector3::repeat(1.0) + scale));

@@ -2,24 +2,21 @@
 
 use core::ops::Range;
 
+use gyrocal_evaluation::Statistic;
 use gyrocal_instruments::{InstrumentError, Log, StopSettings, find_stops};
 use gyrocal_statistics::deviates::Draw;
-use gyrocal_testkit::position_test::{UnitErrors, hand_held};
+use gyrocal_testkit::position_test::{UnitErrors, hand_held, vector};
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 
-use super::at_least;
+use super::logs;
 use crate::error::Error;
 use crate::figure::Figure;
-use crate::resumable;
-use crate::truth::Extent;
+use crate::harness::{Context, Row};
 
 /// Purpose of the stream of draws.
 const MOTION: u64 = 1805;
 
-const FIRST_SEED: u64 = 840_000;
-const RECORDS: u64 = 50;
-const SMALL: u64 = 6;
 const STOPS: usize = 20;
 const RATE_HZ: f64 = 100.0;
 
@@ -30,37 +27,31 @@ struct Found {
     false_stops: usize,
 }
 
-pub(super) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
-    let small = extent.small;
-    let seeds = FIRST_SEED..FIRST_SEED + extent.records(RECORDS, SMALL);
-    let campaign = resumable::campaign("logs", "stops", seeds.clone(), small)?;
-    let outcome = campaign.run(test, |_| ())?;
-    let seeds = format!("{seeds:?}");
-    let all = outcome
-        .successes()
-        .flat_map(|(_, found)| found.stops.iter().copied());
-    let name = format!("hand-held tests of {STOPS} stops: stops found");
-    let found = at_least(&name, 0.98, all, &seeds, small);
-    let false_stops: usize = outcome
-        .successes()
-        .map(|(_, found)| found.false_stops)
-        .sum();
-    let tests = outcome.successes().count();
-    let mut none = Figure::within("the same: false stops", [0.0, 0.0], false_stops as f64);
-    none.target = "0".to_owned();
-    none.measured = false_stops.to_string();
-    Ok(vec![found, none.over(tests, seeds)])
+pub(super) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
+    let false_stops = |tests: &[Found]| {
+        let all: usize = tests.iter().map(|test| test.false_stops).sum();
+        Statistic::Value(all as f64, tests.len() as u64)
+    };
+    let rows = [
+        Row::each(
+            format!("hand-held tests of {STOPS} stops: stops found"),
+            |test: &Found| test.stops.clone(),
+        )
+        .at_least(0.98, "one stop of two tests and a half may be set again"),
+        Row::new("the same: false stops", false_stops)
+            .at_most(0.0, "a false stop is a wrong equation of the fit"),
+    ];
+    context.measure(&logs("stops", [840_000, 50, 6], test), &rows)
 }
 
 /// A test in the hand: tremor of 0.3 to 1 deg/s rms about each axis, biases of half a degree a second.
 fn test(seed: u64) -> Result<Found, InstrumentError> {
     let mut draw = Draw::new(seed, MOTION);
-    let mut vector = |size: f64| Vector3::new(draw.normal(), draw.normal(), draw.normal()) * size;
     let unit = UnitErrors {
-        gyro_bias: vector(0.5_f64.to_radians()),
+        gyro_bias: vector(&mut draw) * 0.5_f64.to_radians(),
         gyro_g: Matrix3::zeros(),
         gyro_gg: Vector3::zeros(),
-        accel_bias: vector(0.02),
+        accel_bias: vector(&mut draw) * 0.02,
         accel_matrix: Matrix3::identity(),
         gyro_noise: 2e-3,
         accel_noise: 2e-3,

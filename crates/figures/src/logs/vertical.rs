@@ -1,29 +1,21 @@
 //! Vertical rate of a static unit: projection of the gyros, motion of gravity, and both.
 
+use gyrocal_instruments::InstrumentError;
 use gyrocal_instruments::strapdown::{ImportSettings, import};
-use gyrocal_instruments::{Description, InstrumentError, Log};
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_statistics::{NORMAL_97_5, root_mean_square};
-use gyrocal_testkit::sensor_noise::{Filter, SensorNoise};
+use gyrocal_testkit::position_test::vector;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-use super::covered;
+use super::unit::Unit;
+use super::{OVER_PROJECTION, OVER_PROJECTION_REASON, described, logs};
 use crate::error::Error;
 use crate::figure::Figure;
-use crate::resumable;
-use crate::truth::Extent;
+use crate::harness::{COVERAGE, COVERAGE_REASON, Context, Row};
 
 /// Purpose of the stream of draws.
 const ERRORS: u64 = 1803;
-
-const FIRST_SEED: u64 = 850_000;
-const RECORDS: u64 = 500;
-const SMALL: u64 = 20;
-
-const DEG_PER_H: f64 = core::f64::consts::PI / 180.0 / 3600.0;
-const EARTH_DEG_PER_H: f64 = 15.041_07;
-const LATITUDE_DEG: f64 = 45.0;
 
 /// Result for one log: errors and standard deviations \[deg/h\].
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -33,97 +25,60 @@ struct Vertical {
     both: [f64; 2],
 }
 
-pub(super) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
-    let small = extent.small;
-    let seeds = FIRST_SEED..FIRST_SEED + extent.records(RECORDS, SMALL);
-    let campaign = resumable::campaign("logs", "vertical", seeds.clone(), small)?;
-    let outcome = campaign.run(log, |_| ())?;
-    let logs: Vec<&Vertical> = outcome.successes().map(|(_, log)| log).collect();
-    let seeds = format!("{seeds:?}");
-    let with = || logs.iter().filter_map(|log| Some((*log, log.projection?)));
-    let holds = |[error, sigma]: [f64; 2]| error.abs() <= NORMAL_97_5 * sigma;
-    let name = "static logs, vertical rate by both ways: coverage of 95 % intervals";
-    let mut figures = vec![covered(
-        name,
-        with().map(|(log, _)| holds(log.both)),
-        &seeds,
-        small,
-    )];
-    let rms = |values: Vec<f64>| root_mean_square(values.iter().copied());
-    let of = |of: fn([f64; 2]) -> f64| {
-        let both = rms(with().map(|(log, _)| of(log.both)).collect());
-        both / rms(with().map(|(_, projection)| of(projection)).collect())
+pub(super) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
+    let beside = |part: usize| move |log: &Vertical| Some([log.both[part], log.projection?[part]]);
+    let of_paths = |logs: &[Vertical]| {
+        let paths = root_mean_square(logs.iter().map(|log| log.path[1]));
+        let projections = logs.iter().filter_map(|log| Some(log.projection?[1]));
+        format!("{:.1}", paths / root_mean_square(projections))
     };
-    let count = with().count();
-    for (what, ratio) in [
-        ("rms error", of(|[error, _]| error)),
-        ("sigma", of(|[_, sigma]| sigma)),
-    ] {
-        let name = format!("static logs, vertical rate: {what} over that of projection alone");
-        let mut figure = Figure::within(&name, [f64::NEG_INFINITY, 1.05], ratio);
-        if small {
-            figure.holds = None;
-            figure.too_few = true;
-        }
-        figures.push(figure.over(count, seeds.as_str()));
-    }
-    let paths = rms(logs.iter().map(|log| log.path[1]).collect());
-    let projections = rms(with().map(|(_, [_, sigma])| sigma).collect());
-    let name = "static logs: rms sigma of the motion of gravity over that of projection";
-    figures.push(Figure::note(name, format!("{:.1}", paths / projections)).over(count, seeds));
-    Ok(figures)
+    let rows = [
+        Row::share(
+            "static logs, vertical rate by both ways: coverage of 95 % intervals",
+            |log: &Vertical| {
+                let [error, sigma] = log.both;
+                log.projection.map(|_| error.abs() <= NORMAL_97_5 * sigma)
+            },
+        )
+        .between(COVERAGE, COVERAGE_REASON),
+        Row::rms_ratio(
+            "static logs, vertical rate: rms error over that of projection alone",
+            beside(0),
+        )
+        .at_most(OVER_PROJECTION, OVER_PROJECTION_REASON),
+        Row::rms_ratio(
+            "static logs, vertical rate: sigma over that of projection alone",
+            beside(1),
+        )
+        .at_most(OVER_PROJECTION, OVER_PROJECTION_REASON),
+        Row::words(
+            "static logs: rms sigma of the motion of gravity over that of projection",
+            of_paths,
+        ),
+    ];
+    context.measure(&logs("vertical", [850_000, 500, 20], log), &rows)
 }
 
 /// A navigation-grade unit at rest for half an hour to three hours, at 1 Hz.
 fn log(seed: u64) -> Result<Vertical, InstrumentError> {
     let mut draw = Draw::new(seed, ERRORS);
     let samples = draw.log_uniform([1.8e3, 1.08e4]) as usize;
-    let vector = |draw: &mut Draw| Vector3::new(draw.normal(), draw.normal(), draw.normal());
     let up = (Vector3::z() + 0.3 * vector(&mut draw)).normalize();
-    let north = vector(&mut draw).cross(&up).normalize();
-    let (sine, cosine) = f64::to_radians(LATITUDE_DEG).sin_cos();
-    let earth = EARTH_DEG_PER_H * (sine * up + cosine * north);
-    let bias = 0.3 * vector(&mut draw);
     let white = draw.log_uniform([0.3, 3.0]);
-    let fast = SensorNoise {
+    let unit = Unit {
+        bias: 0.3 * vector(&mut draw),
+        white,
         quantisation: white * draw.log_uniform([0.3, 3.0]),
-        random_walk: white,
-        bias_instability: 0.0,
-        rate_random_walk: 0.0,
-        filter: Filter::None,
+        flicker: draw.log_uniform([0.001, 0.01]),
+        walk: white * draw.log_uniform([1e-5, 1e-4]),
+        accel: [0.0, draw.log_uniform([1e-5, 1e-4])],
+        latitude_deg: 45.0,
+        ..Unit::default()
     };
-    let slow = SensorNoise {
-        quantisation: 0.0,
-        random_walk: 0.0,
-        bias_instability: draw.log_uniform([0.001, 0.01]),
-        rate_random_walk: white * draw.log_uniform([1e-5, 1e-4]),
-        filter: Filter::None,
-    };
-    let series = |noise: SensorNoise, purpose: u64| -> [Vec<f64>; 3] {
-        core::array::from_fn(|axis| noise.rates(samples, 10 * seed + 3 * purpose + axis as u64))
-    };
-    let [fast, slow] = [series(fast, 0), series(slow, 1)];
-    let accel_noise = draw.log_uniform([1e-5, 1e-4]);
-    let mut gyro = Vec::with_capacity(samples);
-    let mut accel = Vec::with_capacity(samples);
-    for sample in 0..samples {
-        let noise = |parts: &[Vec<f64>; 3]| {
-            Vector3::new(parts[0][sample], parts[1][sample], parts[2][sample])
-        };
-        let rate = earth + bias + noise(&fast) + noise(&slow);
-        gyro.push((DEG_PER_H * rate).into());
-        accel.push((up + accel_noise * vector(&mut draw)).into());
-    }
-    // The bias of the record is its mean, slow parts included.
-    let mean = |axis: usize| slow[axis].iter().sum::<f64>() / samples as f64;
-    let vertical = up.dot(&(earth + bias + Vector3::new(mean(0), mean(1), mean(2))));
-    let text = format!(
-        "[time]\nrate_hz = 1\n[gyro]\ncolumns = [\"a\", \"b\", \"c\"]\nunit = \"rad/s\"\n[accel]\n\
-         columns = [\"d\", \"e\", \"f\"]\nunit = \"g\"\n[site]\nlatitude_deg = {LATITUDE_DEG:?}\n"
-    );
-    let description = Description::parse(&text, "log.toml")?;
-    let made = Log::from_samples(1.0, gyro, accel);
-    let report = import(&made, &description, &ImportSettings::default())?.report;
+    let made = unit.log(up, [samples, 1], |_| 0.0, &mut draw, seed);
+    let description = described(1.0, unit.latitude_deg, "")?;
+    let report = import(&made.log, &description, &ImportSettings::default())?.report;
+    let vertical = unit.vertical_earth() + up.dot(&made.mean_bias);
     let error = |[rate, sigma]: [f64; 2]| [rate - vertical, sigma];
     Ok(Vertical {
         path: error(report.vertical_rate_deg_per_h),

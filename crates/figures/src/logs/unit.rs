@@ -2,7 +2,8 @@
 
 use gyrocal_instruments::Log;
 use gyrocal_statistics::deviates::Draw;
-use gyrocal_testkit::sensor_noise::{Filter, SensorNoise};
+use gyrocal_testkit::position_test::vector;
+use gyrocal_testkit::sensor_noise::SensorNoise;
 use nalgebra::{Matrix3, Vector3};
 
 /// A degree per hour in rad/s.
@@ -14,13 +15,16 @@ pub(super) const EARTH_DEG_PER_H: f64 = 15.041_07;
 /// Standard deviation of the level by the biases of the accelerometers \[rad\].
 pub(super) const LEVEL_RAD: f64 = 0.01 * core::f64::consts::PI / 180.0;
 
+/// Standard deviation of a sample of ordinary accelerometers \[g\].
+pub(super) const ACCEL_NOISE_G: f64 = 1e-3;
+
 /// A unit, and the site.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Unit {
     /// Errors of the gyros \[deg/h\].
     pub(super) bias: Vector3<f64>,
-    /// Output of the gyros per rate about each axis.
-    pub(super) matrix: Matrix3<f64>,
+    /// Output of the gyros per rate about each axis, less that of exact ones.
+    pub(super) matrix_error: Matrix3<f64>,
     /// Rate of the gyros per g along each axis \[deg/h/g\].
     pub(super) of_force: Matrix3<f64>,
     /// Standard deviation of the mean rate over a second \[deg/h\].
@@ -33,6 +37,8 @@ pub(super) struct Unit {
     pub(super) walk: f64,
     /// Step of the outputs over the standard deviation of the noise of a sample.
     pub(super) step: f64,
+    /// Standard deviations of the biases of the accelerometers, and of their samples \[g\].
+    pub(super) accel: [f64; 2],
     /// Latitude.
     pub(super) latitude_deg: f64,
 }
@@ -44,6 +50,26 @@ pub(super) struct Made {
 }
 
 impl Unit {
+    /// Noise as of any grade, in proportion to the white one, with ordinary accelerometers and outputs in steps,
+    /// somewhere on Earth.
+    pub(super) fn of_any_grade(white: f64, draw: &mut Draw) -> Self {
+        Self {
+            white,
+            quantisation: white * draw.log_uniform([1e-3, 0.1]),
+            flicker: white * draw.log_uniform([3e-3, 0.1]),
+            walk: white * draw.log_uniform([1e-5, 1e-3]),
+            step: draw.log_uniform([0.1, 1.0]),
+            accel: [LEVEL_RAD, ACCEL_NOISE_G],
+            latitude_deg: 120.0 * draw.uniform() - 60.0,
+            ..Self::default()
+        }
+    }
+
+    /// The vertical part of the Earth rate \[deg/h\].
+    pub(super) fn vertical_earth(&self) -> f64 {
+        EARTH_DEG_PER_H * self.latitude_deg.to_radians().sin()
+    }
+
     /// A log of whole seconds at `rate_hz` with specific force along `up`, on a table that turns about it at
     /// `table` \[rad/s\] of the second. Flicker and walk change from second to second.
     pub(super) fn log(
@@ -55,11 +81,9 @@ impl Unit {
         seed: u64,
     ) -> Made {
         let slow = SensorNoise {
-            quantisation: 0.0,
-            random_walk: 0.0,
             bias_instability: self.flicker,
             rate_random_walk: self.walk,
-            filter: Filter::None,
+            ..SensorNoise::default()
         };
         let slow: [Vec<f64>; 3] =
             core::array::from_fn(|axis| slow.rates(seconds, 10 * seed + axis as u64));
@@ -72,7 +96,8 @@ impl Unit {
         let white = self.white * (rate_hz as f64).sqrt();
         let angle_noise = self.quantisation / interval_s;
         let step = self.step * white.hypot(angle_noise);
-        let accel_bias = LEVEL_RAD * vector(draw);
+        let [accel_bias, accel_noise] = self.accel;
+        let accel_bias = accel_bias * vector(draw);
         let mut before = angle_noise * vector(draw);
         let mut angle = 0.0_f64;
         let (mut gyro, mut accel) = (Vec::new(), Vec::new());
@@ -86,16 +111,14 @@ impl Unit {
                 let after = angle_noise * vector(draw);
                 let noise = white * vector(draw) + after - before;
                 before = after;
-                let rate = self.matrix * (earth + up * (table / DEG_PER_H)) + drift + noise;
-                let output = rate.map(|rate| {
-                    if step > 0.0 {
-                        (rate / step).round() * step
-                    } else {
-                        rate
-                    }
-                });
+                let rate = earth + up * (table / DEG_PER_H);
+                let rate = rate + self.matrix_error * rate + drift + noise;
+                let output = match step > 0.0 {
+                    true => rate.map(|rate| (rate / step).round() * step),
+                    false => rate,
+                };
                 gyro.push((DEG_PER_H * output).into());
-                accel.push((up + accel_bias + 1e-3 * vector(draw)).into());
+                accel.push((up + accel_bias + accel_noise * vector(draw)).into());
             }
         }
         let mean = (0..seconds).map(rate_of).sum::<Vector3<f64>>() / seconds as f64;
@@ -104,9 +127,4 @@ impl Unit {
             mean_bias: self.bias + self.of_force * up + mean,
         }
     }
-}
-
-/// Three normal deviates.
-pub(super) fn vector(draw: &mut Draw) -> Vector3<f64> {
-    Vector3::new(draw.normal(), draw.normal(), draw.normal())
 }
