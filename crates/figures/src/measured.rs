@@ -1,37 +1,75 @@
 //! Two recordings of real gyros: the figures of docs/measured-data.md.
 
-mod allan;
 mod ring_laser;
 mod xsens;
 
 use std::path::{Path, PathBuf};
 
+use toml::{Table, Value};
+
 use crate::error::Error;
 use crate::figure::Figure;
+use crate::harness::Context;
 use crate::page;
 use crate::values::Values;
 
 /// Template of docs/measured-data.md.
 pub(crate) const TEMPLATE: &str = include_str!("measured/page.md");
 
-/// Result of a section: texts and tables for the page, and figures with their targets.
-#[derive(Default)]
+/// Ranges of the rows by their names, with reasons.
+const ROWS: &str = include_str!("measured/rows.toml");
+
+/// Result of the sections: texts for the page, and figures with their targets.
 struct Measured {
     values: Values,
     figures: Vec<Figure>,
+    rows: Table,
 }
 
-/// All figures of the topic. The last compares the page with the measurement; with `write` it is renewed
+impl Measured {
+    /// Adds a value that is to be in the range of its row; `*` in the name of a row stands for an axis.
+    fn judge(&mut self, name: &str, value: f64) -> &mut Figure {
+        let of_axis = |key: String, axis| key.replace(&format!("gyro_{axis}:"), "gyro_*:");
+        let key = gyrocal_record::AXES
+            .into_iter()
+            .fold(name.to_owned(), of_axis);
+        let row = self.rows.get(&key).and_then(Value::as_array);
+        let figure = match row.map_or(&[][..], Vec::as_slice) {
+            [Value::Float(low), Value::Float(high), Value::String(reason)] => Figure {
+                reason: reason.clone(),
+                ..Figure::within(name, [*low, *high], value)
+            },
+            _ => Figure::truth(
+                &format!("{name}: measured/rows.toml has a range for it"),
+                false,
+            ),
+        };
+        self.figures.push(figure);
+        let last = self.figures.len() - 1;
+        &mut self.figures[last]
+    }
+
+    fn put<const N: usize>(&mut self, values: [(&str, String); N]) {
+        for (name, text) in values {
+            self.values.put(name, text);
+        }
+    }
+}
+
+/// All figures of the part. The last compares the page with the measurement; with leave to write it is renewed
 /// instead.
-pub(crate) fn figures(write: bool) -> Result<Vec<Figure>, Error> {
-    let mut measured = Measured::default();
+pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
+    let mut measured = Measured {
+        values: Values::default(),
+        figures: Vec::new(),
+        rows: toml::from_str(ROWS)?,
+    };
     xsens::measure(&mut measured)?;
     ring_laser::measure(&mut measured)?;
-    allan::measure(&mut measured)?;
     let text = page::fill(TEMPLATE, &measured.values)?;
     let path = page::docs().join("measured-data.md");
     let mut figures = measured.figures;
-    if write {
+    if context.write {
         gyrocal_record::write_whole(&path, text.as_bytes())?;
     } else {
         figures.push(Figure::truth(
@@ -47,12 +85,4 @@ fn data(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("../../tests/data/measured")
         .join(name)
-}
-
-/// Run time of a command on a recording; the target is one minute.
-fn run_time(command: &str, seconds: f64) -> Figure {
-    Figure {
-        measured: format!("{seconds:.1}"),
-        ..Figure::within(&format!("{command}: run time, s"), [0.0, 60.0], seconds)
-    }
 }

@@ -219,7 +219,7 @@ pub(crate) const TOPICS: [Topic; 8] = [
                         "crates/figures/src/measured",
                     ],
                 ),
-                |to| measured::figures(to.write),
+                measured::figures,
             ),
         ],
     },
