@@ -14,8 +14,8 @@ use gyrocal_statistics::Proportion;
 
 use crate::error::Error;
 use crate::figure::Figure;
+use crate::harness::sources::{INSTRUMENTS, of};
 use crate::harness::{Context, Population};
-use crate::topics::{INSTRUMENTS, of};
 
 /// All figures of the part.
 pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {

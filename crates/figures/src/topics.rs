@@ -237,15 +237,23 @@ pub(crate) const TOPICS: [Topic; 8] = [
                         "crates/figures/src/any_plant",
                     ],
                 ),
-                |to| any_plant::figures(Extent::of(to)),
+                any_plant::figures,
             ),
             Part {
                 small: false,
                 ..part(
                     "peers",
                     "The diagnosis of a plant beside sparse and symbolic regression from PyPI.",
-                    of(PLANTS, &["crates/figures/src/plant_peers.rs"]),
-                    |to| plant_peers::figures(Extent::of(to)),
+                    of(
+                        PLANTS,
+                        &[
+                            "crates/figures/src/any_plant.rs",
+                            "crates/figures/src/any_plant",
+                            "crates/figures/src/plant_peers.rs",
+                            "crates/figures/src/plant_peers",
+                        ],
+                    ),
+                    plant_peers::figures,
                 )
             },
         ],

@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use gyrocal_plant::{FittedPlant, LoadedPlant, PlantRecord};
 use gyrocal_plant_codegen::{derive, settings_of_a_command};
-use gyrocal_truth::plant::{Kind, Setting, Stream, simulate};
 
-use super::{loaded, prepared, record};
+use super::prepared;
+use super::simulated::{Kind, Setting, Stream, simulate};
 use crate::error::Error;
 use crate::figure::Figure;
 
@@ -27,49 +27,47 @@ const HELD: usize = 10;
 const SIGMA: f64 = 0.01;
 
 /// Tanks, two synthetic models and an oscillator without its drive.
-pub(super) fn figures() -> Result<Vec<Figure>, Error> {
-    let tanks = loaded(Kind::Tanks)?;
-    let level = record(&tanks, &Setting::random(Kind::Tanks, SEED, ROWS))?;
+pub(super) fn figure(plants: &[LoadedPlant]) -> Result<Figure, Error> {
+    let [tanks, duffing] = [Kind::Tanks, Kind::Duffing].map(|kind| &plants[kind as usize]);
+    let of = |kind| Setting::random(kind, SEED, ROWS);
+    let level = prepared(tanks, simulate(&of(Kind::Tanks), None))?;
     let product = script("product.py")?;
-    let product_record = of_rates(&product, 1, |state, input| {
+    let of_product = of_rates(&product, 1, |state, input| {
         vec![2.0 * 0.4 * input - 0.5 * state[0]]
     })?;
     let compartments = script("compartments.py")?;
-    let compartments_record = of_rates(&compartments, 2, |state, input| {
+    let of_compartments = of_rates(&compartments, 2, |state, input| {
         let uptake = 0.5 * state[0];
         vec![0.8 * input - uptake, uptake / 2.0 - 0.2 * state[1]]
     })?;
-    let duffing = loaded(Kind::Duffing)?;
-    let setting = Setting::random(Kind::Duffing, SEED, ROWS);
-    let still = vec![vec![0.0]; ROWS + 1];
-    let free = prepared(&duffing, simulate(&setting, Some(&still)))?;
+    let still = vec![vec![0.0]; ROWS];
+    let free = prepared(duffing, simulate(&of(Kind::Duffing), Some(&still)))?;
     let cases = [
-        ("tanks", gauge_of(&tanks, level, &["k1", "k2", "k4"])?),
+        ("tanks", gauge_of(tanks, level, &["k1", "k2", "k4"])?),
         (
             "product of two gains",
-            gauge_of(&product, product_record, &["a", "b"])?,
+            gauge_of(&product, of_product, &["a", "b"])?,
         ),
         (
             "amount without a scale",
-            gauge_of(&compartments, compartments_record, &["share", "volume"])?,
+            gauge_of(&compartments, of_compartments, &["share", "volume"])?,
         ),
-        ("an input that is still", weak(&duffing, free)?),
+        ("an input that is still", weak(duffing, free)?),
     ];
-    let right = cases.iter().filter(|(_, right)| *right).count();
-    let wrong: Vec<&str> = cases
-        .iter()
-        .filter(|(_, right)| !right)
-        .map(|(name, _)| *name)
-        .collect();
+    let wrong = cases.iter().filter(|(_, right)| !right);
+    let wrong: Vec<&str> = wrong.map(|(name, _)| *name).collect();
+    let right = format!("{} of {}", cases.len() - wrong.len(), cases.len());
     let name =
         "any plant: gauge of tanks and of two synthetic models said, weak excitation called none";
-    let mut figure = Figure::truth(name, wrong.is_empty());
-    figure.target = format!("{0} of {0}", cases.len());
-    figure.measured = match wrong.as_slice() {
-        [] => format!("{right} of {}", cases.len()),
-        wrong => format!("{right} of {}, not {}", cases.len(), wrong.join(", ")),
+    let figure = Figure {
+        target: format!("{0} of {0}", cases.len()),
+        measured: match wrong.as_slice() {
+            [] => right,
+            wrong => format!("{right}, not {}", wrong.join(", ")),
+        },
+        ..Figure::truth(name, wrong.is_empty())
     };
-    Ok(vec![figure.over(cases.len(), SEED.to_string())])
+    Ok(figure.over(cases.len(), SEED.to_string()))
 }
 
 /// A plant that is derived from a script beside this file.

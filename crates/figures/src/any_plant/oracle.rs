@@ -13,7 +13,7 @@ const LEAST: f64 = 1e-6;
 /// within the deviance of a set. An effect with the correlation c to a hidden one of d standard deviations
 /// lacks d²(1 − c²) on average, with twice the root of that for its standard deviation. Effects with an
 /// onset are left out. `None` if the hidden effect is one of these.
-pub(crate) fn set_size(nominal: &FittedPlant, hidden: &str, strength: f64) -> Option<f64> {
+pub(super) fn set_size(nominal: &FittedPlant, hidden: &str, strength: f64) -> Option<f64> {
     let tables = nominal.plant();
     let information = remaining(nominal)?;
     let own = tables.effects.iter().find(|effect| effect.id == hidden)?;
@@ -42,7 +42,7 @@ pub(crate) fn set_size(nominal: &FittedPlant, hidden: &str, strength: f64) -> Op
 }
 
 /// Whether an effect has an onset.
-pub(crate) fn has_onset(tables: &Plant, id: &str) -> bool {
+pub(super) fn has_onset(tables: &Plant, id: &str) -> bool {
     let mut effects = tables.effects.iter();
     effects.any(|effect| effect.id == id && effect.kind == EffectKind::Step)
 }

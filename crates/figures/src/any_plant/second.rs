@@ -2,7 +2,8 @@
 
 use gyrocal_plant::answer::{Comparison, OutputError};
 use gyrocal_plant::{LoadedPlant, PlantError, PlantRecord};
-use gyrocal_truth::plant::{Setting, simulate};
+
+use super::simulated::{Setting, simulate};
 
 /// Gain of the true model over the nominal one, nats, from which on a better prediction is asked for.
 pub(super) const LEAST_GAIN: f64 = 3.0;
@@ -14,13 +15,6 @@ pub(super) struct Second {
     quiet: Vec<f64>,
     /// Standard deviations of the noise of each output.
     sigmas: Vec<f64>,
-}
-
-/// Name of the figure of better predictions.
-pub(super) fn name(rows: usize) -> String {
-    format!(
-        "any plant: effect of d >= 12 named, true model gains >= {LEAST_GAIN} nats: simulations over all {rows} rows of a second record have less error"
-    )
 }
 
 /// Whether simulations are nearer to the outputs with what was found, on average over outputs.

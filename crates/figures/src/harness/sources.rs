@@ -31,7 +31,12 @@ pub(crate) const DIAGNOSIS: &[&str] = &[
 ];
 pub(crate) const INSTRUMENTS: &[&str] =
     &["crates/instruments", "crates/diagnosis", "crates/testkit"];
-pub(crate) const PLANTS: &[&str] = &["crates/plant", "codegen/plant", "crates/evaluation"];
+pub(crate) const PLANTS: &[&str] = &[
+    "crates/plant",
+    "crates/truth",
+    "codegen/plant",
+    "crates/evaluation",
+];
 pub(crate) const COMMAND: &[&str] = &["crates/cli"];
 
 /// What a result depends on, from the root of the workspace.
