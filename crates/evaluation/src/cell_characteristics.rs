@@ -9,7 +9,7 @@ use gyrocal_statistics::{NORMAL_97_5, Proportion, normal_probability, normal_qua
 
 use crate::campaign::Outcome;
 use crate::catalogue::effect_of;
-use crate::characteristic::{CellFigures, Characteristic};
+use crate::characteristic::{Characteristic, Measure};
 use crate::effect_family::{FamilyRow, families};
 use crate::population::PopulationCell;
 use crate::record_score::{RecordScore, SAME_CLASS_COSINE};
@@ -18,23 +18,21 @@ use crate::statistic::{Statistic, Target};
 /// A stricter limit than [`SAME_CLASS_COSINE`], for information.
 const STRICT_CLASS_COSINE: f64 = 0.97;
 
-/// Targets for single effects by strength: detection on average and of the worst family, class of
-/// the first finding.
-const SINGLE_TARGETS: [(u32, [f64; 2], f64); 2] =
-    [(8, [0.995, 0.99], 0.91), (12, [0.995, 0.99], 0.97)];
-
-/// Weak effects are found as often as the unknown noise lets them. By strength, what detection is not to fall
-/// below: measured were 0.78 and 0.95 of 250 records.
-const WEAK_TARGETS: [(u32, f64); 2] = [(5, 0.72), (6, 0.92)];
-
-/// Least detection of weak effects over that of a search that knows that no rate walks, which also has to
-/// estimate the levels of the noise.
-const OF_ORACLE: f64 = 0.95;
-
 /// Strengths given the findings that count as the requested 10 sigmas.
 const REACHED: Range<f64> = 9.0..11.5;
 
-/// The figures of a cell, in the order of the table.
+/// Largest error of an onset that counts as found, as a part of the record.
+const NEAR: f64 = 0.05;
+
+/// Reasons of targets.
+const OF_SETS: &str = "sets of 95 %";
+const OF_INTERVALS: &str = "intervals of 95 %, two points for what their normal shape leaves out";
+const OF_STRONG: &str = "the thresholds are at five sigmas: noise of three hides one of 700";
+const OF_FAMILY: &str = "of few records each; none is shown to be found less often";
+const OF_WEAK: &str = "as often as the unknown noise lets them: 0.78 of five sigmas, 0.95 of six";
+const OF_CLASSES: &str = "signatures that are nearly parallel change places in noise";
+
+/// The characteristics of a cell, in the order of the table.
 #[must_use]
 pub fn characteristics(
     cell: PopulationCell,
@@ -42,70 +40,58 @@ pub fn characteristics(
     seeds: &Range<u64>,
 ) -> Vec<Characteristic> {
     let records: Vec<&RecordScore> = outcome.successes().map(|(_, record)| record).collect();
-    let mut figures = CellFigures {
-        cell: cell.name(),
-        seeds: seeds.clone(),
-        full: seeds.end - seeds.start >= cell.full_runs(),
-        all: Vec::new(),
-    };
-    match cell {
-        PopulationCell::Clean => clean(&mut figures, &records),
-        PopulationCell::Single(strength) => {
-            let asked = SINGLE_TARGETS.iter().find(|(of, ..)| *of == strength);
-            let is_weak = WEAK_TARGETS.iter().find(|(of, _)| *of == strength);
-            if let Some((_, least)) = is_weak {
-                weak(&mut figures, &records, *least);
-                single(&mut figures, &records, None);
-            } else if let Some((_, detected, first)) = asked {
-                single(&mut figures, &records, Some((*detected, *first)));
-            }
-        }
-        PopulationCell::LogUniform => single(&mut figures, &records, None),
-        PopulationCell::Pair => pair(&mut figures, &records),
-        PopulationCell::OutOfCatalogue => out_of_catalogue(&mut figures, &records),
-        PopulationCell::Step => step(&mut figures, &records),
-        PopulationCell::Cubic => {
-            let silent = share(&records, |record| Some(record.verdict == "clean"));
-            figures.judge("silent", Target::AtLeast(0.75), silent);
-        }
-        PopulationCell::Azimuth => {
-            let first = share(&records, |record| {
-                let first = record.findings.first();
-                Some(first.is_some_and(|first| is_of_kind(&first.effect, EffectKind::InitialState)))
-            });
-            figures.judge(
-                "named `platform.initial_attitude`",
-                Target::AtLeast(0.95),
-                first,
-            );
-            let strengths = Statistic::Mean(strengths(&records));
-            figures.note("its mean size in sigmas", strengths);
-        }
-    }
-    let single_names = records.iter().flat_map(|record| &record.findings);
-    let single_names = single_names
-        .filter(|finding| finding.lacks_equivalents)
-        .count();
-    if cell != PopulationCell::Clean && cell != PopulationCell::Cubic {
-        figures.none(
-            "single names for exact equivalents",
-            single_names,
-            records.len() as u64,
-        );
-    }
+    let runs = seeds.end - seeds.start;
+    let mut all = measures(cell, &records);
     let failed = outcome.failures().count();
     if failed > 0 {
-        let runs = seeds.end - seeds.start;
-        figures.none("records that could not be examined", failed, runs);
+        all.push(none("records that could not be examined", failed, runs));
     }
-    figures.all
+    let full = runs >= cell.full_runs();
+    let of = |measure: &Measure| Characteristic::of(&cell.name(), seeds, full, measure);
+    all.iter().map(of).collect()
 }
 
-fn share(records: &[&RecordScore], of: impl Fn(&RecordScore) -> Option<bool>) -> Statistic {
-    Statistic::share(records, |record| of(record))
+/// The statistics of a cell over its records, in the order of the table.
+#[must_use]
+pub fn measures(cell: PopulationCell, records: &[&RecordScore]) -> Vec<Measure> {
+    let mut all = match cell {
+        PopulationCell::Clean => clean(records),
+        PopulationCell::Single(5) => weak(records, 0.72),
+        PopulationCell::Single(6) => weak(records, 0.92),
+        PopulationCell::Single(8) => strong(records, 0.91),
+        PopulationCell::Single(12) => strong(records, 0.97),
+        PopulationCell::Single(_) => Vec::new(),
+        PopulationCell::LogUniform => single(records, None),
+        PopulationCell::Pair => pair(records),
+        PopulationCell::OutOfCatalogue => out_of_catalogue(records),
+        PopulationCell::Step => step(records),
+        PopulationCell::Cubic => {
+            let silent = |record: &RecordScore| Some(record.verdict == "clean");
+            let reason = "three sigmas are below every threshold, but noise adds to some";
+            vec![Measure::share("silent", records, silent).at_least(0.75, reason)]
+        }
+        PopulationCell::Azimuth => azimuth(records),
+    };
+    if cell != PopulationCell::Clean && cell != PopulationCell::Cubic {
+        let findings = records.iter().flat_map(|record| &record.findings);
+        let alone = findings.filter(|finding| finding.lacks_equivalents);
+        let count = records.len() as u64;
+        all.push(none(
+            "single names for exact equivalents",
+            alone.count(),
+            count,
+        ));
+    }
+    all
 }
 
-/// The same for each injected effect separately: some are injected more often than others.
+/// A count that should be 0.
+fn none(figure: &'static str, count: usize, of: u64) -> Measure {
+    let statistic = Statistic::Value(count as f64, of);
+    Measure::new(figure, statistic).with_target(Target::AtMost(0.0), "there is to be none")
+}
+
+/// The share of records for each injected effect separately: some are injected more often than others.
 fn by_effect(
     records: &[&RecordScore],
     of: impl Fn(&RecordScore) -> Option<bool>,
@@ -119,65 +105,58 @@ fn by_effect(
     effects.into_values().map(Proportion::of).collect()
 }
 
-/// `true` if an id is of an effect of a kind.
-fn is_of_kind(id: &str, kind: EffectKind) -> bool {
-    effect_of(id).is_some_and(|effect| effect.kind == kind)
-}
-
-fn strengths(records: &[&RecordScore]) -> Vec<f64> {
-    let hidden = records.iter().flat_map(|record| &record.hidden);
-    hidden.map(|hidden| hidden.strength).collect()
-}
-
-fn clean(figures: &mut CellFigures, records: &[&RecordScore]) {
+fn clean(records: &[&RecordScore]) -> Vec<Measure> {
     let alarms = Proportion::of(records.iter().map(|record| record.verdict != "clean"));
-    // The level is 1 %: of 2000 records 27 are within the bound, and twenty are due.
-    figures.judge(
-        "false alarms, upper 95 % bound",
-        Target::AtMost(0.02),
-        Statistic::Bound(alarms),
-    );
-    figures.note("false alarms", Statistic::Share(alarms));
-    let by = |of: fn(&RecordScore) -> bool| share(records, |record| Some(of(record)));
-    figures.note("false alarms of the search", by(|record| record.detected()));
-    figures.note(
-        "false alarms of noise",
-        by(|record| !record.noise.is_empty()),
-    );
-    figures.note(
-        "false alarms of the remainder",
-        by(|record| record.unexplained.is_some()),
-    );
+    let by = |figure, of: fn(&RecordScore) -> bool| {
+        Measure::share(figure, records, |record| Some(of(record)))
+    };
+    vec![
+        Measure::new("false alarms, upper 95 % bound", Statistic::Bound(alarms)).at_most(
+            0.02,
+            "the level is 1 %: of 2000 twenty are due, and 27 within the bound",
+        ),
+        Measure::new("false alarms", Statistic::Share(alarms)),
+        by("false alarms of the search", RecordScore::detected),
+        by("false alarms of noise", |record| !record.noise.is_empty()),
+        by("false alarms of the remainder", |record| {
+            record.unexplained.is_some()
+        }),
+    ]
+}
+
+/// The same weight for each effect: some are injected more often than others.
+fn average_detected(records: &[&RecordScore]) -> Measure {
+    let of = by_effect(records, |record| Some(record.detected()));
+    Measure::new("detected, average of the effects", Statistic::Average(of))
 }
 
 /// Weak effects: how often they are found, and how often a set holds them beside an oracle's.
-fn weak(figures: &mut CellFigures, records: &[&RecordScore], least: f64) {
+fn weak(records: &[&RecordScore], least: f64) -> Vec<Measure> {
     let in_set = |record: &RecordScore| record.hidden.iter().all(|hidden| hidden.in_set);
-    let both: Vec<[bool; 2]> = records
+    let both = records
         .iter()
-        .filter_map(|record| Some([in_set(record), record.oracle_in_set?]))
-        .collect();
+        .filter_map(|record| Some([in_set(record), record.oracle_in_set?]));
+    let both: Vec<[bool; 2]> = both.collect();
     let of = |which: usize| Statistic::share(&both, |pair| Some(pair[which]));
-    let pairs: Vec<[f64; 2]> = both
-        .iter()
-        .map(|pair| pair.map(|held| f64::from(u8::from(held))))
-        .collect();
-    let all = by_effect(records, |record| Some(record.detected()));
-    figures.judge(
-        "detected, average of the effects",
-        Target::AtLeast(least),
-        Statistic::Average(all),
-    );
-    let ratio = "a set holds the truth, over a search that knows that no rate walks";
-    figures.judge(ratio, Target::AtLeast(OF_ORACLE), Statistic::Ratio(pairs));
-    figures.note("a set holds the truth, of all", of(0));
-    figures.note("the same of that search", of(1));
-    let detected = share(records, |record| Some(record.detected()));
+    let number = |pair: &[bool; 2]| pair.map(|held| f64::from(u8::from(held)));
+    let detected = Statistic::share(records, |record| Some(record.detected()));
     let expected = coverage_given_detection(detected.value());
-    figures.note(
-        "95 % interval of the size, expected of what is detected as often",
-        Statistic::Value(expected, detected.runs()),
-    );
+    let mut all = vec![
+        average_detected(records).at_least(least, OF_WEAK),
+        Measure::new(
+            "a set holds the truth, over a search that knows that no rate walks",
+            Statistic::Ratio(both.iter().map(number).collect()),
+        )
+        .at_least(0.95, "the levels of the noise are estimated by both"),
+        Measure::new("a set holds the truth, of all", of(0)),
+        Measure::new("the same of that search", of(1)),
+        Measure::new(
+            "95 % interval of the size, expected of what is detected as often",
+            Statistic::Value(expected, detected.runs()),
+        ),
+    ];
+    all.extend(single(records, None));
+    all
 }
 
 /// Coverage of the 95 % interval of a normal estimate that is looked at where it exceeds a threshold, which a
@@ -194,92 +173,77 @@ fn coverage_given_detection(detected: f64) -> f64 {
     (normal_probability(NORMAL_97_5) - normal_probability(least)) / detected
 }
 
-fn single(figures: &mut CellFigures, records: &[&RecordScore], strong: Option<([f64; 2], f64)>) {
-    let first = strong.map(|(_, first)| first);
-    if let Some(([average, worst], _)) = strong {
-        let of = by_effect(records, |record| Some(record.detected()));
-        figures.judge(
-            "detected, average of the effects",
-            Target::AtLeast(average),
-            Statistic::Average(of),
-        );
-        let all = families(records);
-        // Jumps of the attitude have three sizes at any row, and are found less often.
-        let is_jump = |row: &FamilyRow| {
-            let mut effects = EFFECTS.iter().filter(|effect| effect.family == row.family);
-            effects.any(|effect| effect.kind == EffectKind::StateJump)
-        };
-        let of = |jumps: bool| -> Vec<Proportion> {
-            let some = all.iter().filter(|row| is_jump(row) == jumps);
-            some.map(|row| row.detected()).collect()
-        };
-        for (name, of) in [
-            ("detected, the worst family but knocks", of(false)),
-            ("detected, knocks", of(true)),
-        ] {
-            if !of.is_empty() {
-                figures.judge(name, Target::AtLeast(worst), Statistic::Least(of));
-            }
+/// Effects that are all but always found: detection, and the class of the first finding.
+fn strong(records: &[&RecordScore], first: f64) -> Vec<Measure> {
+    let families = families(records);
+    // Jumps of the attitude have three sizes at any row, and are found less often.
+    let is_jump = |row: &FamilyRow| {
+        let mut effects = EFFECTS.iter().filter(|effect| effect.family == row.family);
+        effects.any(|effect| effect.kind == EffectKind::StateJump)
+    };
+    let mut all = vec![average_detected(records).at_least(0.995, OF_STRONG)];
+    for (figure, jumps) in [
+        ("detected, the worst family but knocks", false),
+        ("detected, knocks", true),
+    ] {
+        let of = families.iter().filter(|row| is_jump(row) == jumps);
+        let of: Vec<Proportion> = of.map(FamilyRow::detected).collect();
+        if !of.is_empty() {
+            all.push(Measure::new(figure, Statistic::Least(of)).at_least(0.99, OF_FAMILY));
         }
     }
-    let in_set = share(records, |record| {
-        record
-            .detected()
-            .then(|| record.hidden.iter().all(|hidden| hidden.in_set))
-    });
-    figures.judge(
-        "the named set holds the truth",
-        Target::AtLeast(0.95),
-        in_set,
-    );
-    set_size(figures, records);
+    all.extend(single(records, Some(first)));
+    all
+}
+
+/// Names, sets and sizes of single effects; with a least share of right first classes.
+fn single(records: &[&RecordScore], first: Option<f64>) -> Vec<Measure> {
+    let in_set = |record: &RecordScore| {
+        let all = || record.hidden.iter().all(|hidden| hidden.in_set);
+        record.detected().then(all)
+    };
     let right = |record: &RecordScore, cosine: f64| {
         let hidden = record.hidden.first()?;
         record.detected().then_some(hidden.first_cosine >= cosine)
     };
-    let first_at = |cosine: f64| share(records, move |record| right(record, cosine));
-    match first {
-        Some(least) => figures.judge(
-            "the class named first is right, average of the effects",
-            Target::AtLeast(least),
-            Statistic::Average(by_effect(records, |record| {
-                right(record, SAME_CLASS_COSINE)
-            })),
-        ),
-        None => figures.note(
-            "the class named first is right",
-            first_at(SAME_CLASS_COSINE),
-        ),
-    }
-    figures.note(
-        "the same with classes of a cosine of 0.97 or more",
-        first_at(STRICT_CLASS_COSINE),
-    );
-    figures.note("the name named first is right", first_at(1.0));
-    covered(figures, records);
-    let more = share(records, |record| {
-        record.detected().then_some(record.findings.len() > 1)
-    });
-    figures.note("a spurious second", more);
-}
-
-fn set_size(figures: &mut CellFigures, records: &[&RecordScore]) {
+    let first_at =
+        |figure, cosine: f64| Measure::share(figure, records, move |record| right(record, cosine));
     let sizes: Vec<[f64; 2]> = records
         .iter()
         .filter(|record| record.detected())
         .filter_map(|record| Some([record.set_size() as f64, record.oracle_set_size? as f64]))
         .collect();
     let own = Statistic::Mean(sizes.iter().map(|pair| pair[0]).collect());
-    figures.judge(
-        "mean size of the set over the oracle's",
-        Target::AtMost(1.2),
-        Statistic::Ratio(sizes),
-    );
-    figures.note("mean size of the set", own);
-    figures.note(
-        "mean size of the smallest sets that hold it in 95 %",
-        Statistic::Mean(smallest(records)),
-    );
+    let class = match first {
+        Some(least) => {
+            let of = by_effect(records, |record| right(record, SAME_CLASS_COSINE));
+            let figure = "the class named first is right, average of the effects";
+            Measure::new(figure, Statistic::Average(of)).at_least(least, OF_CLASSES)
+        }
+        None => first_at("the class named first is right", SAME_CLASS_COSINE),
+    };
+    let second = |record: &RecordScore| record.detected().then_some(record.findings.len() > 1);
+    vec![
+        Measure::share("the named set holds the truth", records, in_set).at_least(0.95, OF_SETS),
+        Measure::new(
+            "mean size of the set over the oracle's",
+            Statistic::Ratio(sizes),
+        )
+        .at_most(1.2, "a fifth for noise that has to be estimated"),
+        Measure::new("mean size of the set", own),
+        Measure::new(
+            "mean size of the smallest sets that hold it in 95 %",
+            Statistic::Mean(smallest(records)),
+        ),
+        class,
+        first_at(
+            "the same with classes of a cosine of 0.97 or more",
+            STRICT_CLASS_COSINE,
+        ),
+        first_at("the name named first is right", 1.0),
+        covered(records),
+        Measure::share("a spurious second", records, second),
+    ]
 }
 
 /// Sizes of the confidence sets of the first search with the constant at which they contain the truth
@@ -302,76 +266,97 @@ fn smallest(records: &[&RecordScore]) -> Vec<f64> {
         .collect()
 }
 
-fn covered(figures: &mut CellFigures, records: &[&RecordScore]) {
-    let covered = records
-        .iter()
-        .flat_map(|record| &record.hidden)
-        .filter_map(|hidden| hidden.covered);
-    figures.judge(
+fn covered(records: &[&RecordScore]) -> Measure {
+    let hidden = records.iter().flat_map(|record| &record.hidden);
+    let covered = Proportion::of(hidden.filter_map(|hidden| hidden.covered));
+    Measure::new(
         "95 % interval of the size holds it, given the right name",
-        Target::AtLeast(0.93),
-        Statistic::Share(Proportion::of(covered)),
-    );
+        Statistic::Share(covered),
+    )
+    .at_least(0.93, OF_INTERVALS)
 }
 
-fn pair(figures: &mut CellFigures, records: &[&RecordScore]) {
-    let each = share(records, |record| Some(record.each_in_its_set()));
-    figures.judge("each in its set", Target::AtLeast(0.90), each);
-    let third = share(records, |record| Some(record.findings.len() > 2));
-    figures.judge("a spurious third", Target::AtMost(0.08), third);
-    covered(figures, records);
+fn pair(records: &[&RecordScore]) -> Vec<Measure> {
+    let third = |record: &RecordScore| Some(record.findings.len() > 2);
+    let each = |record: &RecordScore| Some(record.each_in_its_set());
+    vec![
+        Measure::share("each in its set", records, each).at_least(0.90, "two sets of 95 %"),
+        Measure::share("a spurious third", records, third)
+            .at_most(0.08, "each of two sets that lack their cause may leave one"),
+        covered(records),
+    ]
 }
 
-fn out_of_catalogue(figures: &mut CellFigures, records: &[&RecordScore]) {
+fn azimuth(records: &[&RecordScore]) -> Vec<Measure> {
+    let kind = EffectKind::InitialState;
+    let is_attitude = |id: &str| effect_of(id).is_some_and(|effect| effect.kind == kind);
+    let first = |record: &RecordScore| {
+        let first = record.findings.first();
+        Some(first.is_some_and(|first| is_attitude(&first.effect)))
+    };
+    let hidden = records.iter().flat_map(|record| &record.hidden);
+    let strengths = hidden.map(|hidden| hidden.strength).collect();
+    vec![
+        Measure::share("named `platform.initial_attitude`", records, first)
+            .at_least(0.95, "of some ten sigmas, and like no other effect"),
+        Measure::new("its mean size in sigmas", Statistic::Mean(strengths)),
+    ]
+}
+
+fn out_of_catalogue(records: &[&RecordScore]) -> Vec<Measure> {
     let reached = |record: &RecordScore| {
         let hidden = record.hidden.first();
         hidden.is_some_and(|hidden| REACHED.contains(&hidden.strength))
     };
-    let told = share(records, |record| {
-        reached(record).then(|| record.tells_of_another())
-    });
-    figures.judge(
-        "told: unexplained, or none of these above a half",
-        Target::AtLeast(0.98),
-        told,
-    );
-    // Records where the names took up most of the effect are in the note alone.
     let named = |record: &RecordScore| record.detected() && !record.tells_of_another();
-    let masked = share(records, |record| reached(record).then(|| named(record)));
-    figures.judge("a false name, and not told", Target::AtMost(0.05), masked);
-    figures.note(
-        "the same, of all records",
-        share(records, |record| Some(named(record))),
-    );
-    let unexplained = share(records, |record| {
-        reached(record).then(|| record.unexplained.is_some())
-    });
-    figures.note("unexplained", unexplained);
-    let noise = share(records, |record| {
-        Some(!record.noise.is_empty() && !record.detected() && record.unexplained.is_none())
-    });
-    figures.note("taken for noise alone", noise);
-    figures.note(
-        "as long as asked for beside the causes that were named",
-        share(records, |record| Some(reached(record))),
-    );
+    let of_reached = |figure, of: &dyn Fn(&RecordScore) -> bool| {
+        Measure::share(figure, records, |record| {
+            reached(record).then(|| of(record))
+        })
+    };
+    let of_all = |figure, of: &dyn Fn(&RecordScore) -> bool| {
+        Measure::share(figure, records, |record| Some(of(record)))
+    };
+    vec![
+        of_reached(
+            "told: unexplained, or none of these above a half",
+            &RecordScore::tells_of_another,
+        )
+        .at_least(0.98, "ten sigmas are five above the thresholds"),
+        // Records where the names took up most of the effect are in the note alone.
+        of_reached("a false name, and not told", &named)
+            .at_most(0.05, "as often as a set of 95 % may lack a cause"),
+        of_all("the same, of all records", &named),
+        of_reached("unexplained", &|record| record.unexplained.is_some()),
+        of_all("taken for noise alone", &|record| {
+            !record.noise.is_empty() && !record.detected() && record.unexplained.is_none()
+        }),
+        of_all(
+            "as long as asked for beside the causes that were named",
+            &reached,
+        ),
+    ]
 }
 
-fn step(figures: &mut CellFigures, records: &[&RecordScore]) {
-    const NEAR: f64 = 0.05;
-    let onset = |record: &RecordScore| record.hidden.first().and_then(|hidden| hidden.onset_error);
-    figures.judge(
-        "onset within 5 % of the record, given the right name",
-        Target::AtLeast(0.90),
-        share(records, |record| onset(record).map(|error| error <= NEAR)),
-    );
-    figures.note(
-        "onset within 5 % of the record, of all",
-        share(records, |record| {
-            Some(onset(record).is_some_and(|error| error <= NEAR))
-        }),
-    );
-    figures.note("detected", share(records, |record| Some(record.detected())));
+fn step(records: &[&RecordScore]) -> Vec<Measure> {
+    let near = |record: &RecordScore| Some(record.hidden.first()?.onset_error? <= NEAR);
+    vec![
+        Measure::share(
+            "onset within 5 % of the record, given the right name",
+            records,
+            near,
+        )
+        .at_least(
+            0.90,
+            "at eight sigmas the onset is uncertain by a few percent",
+        ),
+        Measure::share(
+            "onset within 5 % of the record, of all",
+            records,
+            |record| Some(near(record) == Some(true)),
+        ),
+        Measure::share("detected", records, |record| Some(record.detected())),
+    ]
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@ use core::ops::Range;
 use gyrocal_statistics::{Judgement, Proportion};
 use serde::{Deserialize, Serialize};
 
+use crate::record_score::RecordScore;
 use crate::statistic::{Statistic, Target};
 
 /// One measured figure.
@@ -30,61 +31,73 @@ pub struct Characteristic {
     pub holds: Option<bool>,
     /// `true` if the records are too few to tell whether the target is met.
     pub too_few: bool,
-    /// Hits and trials of a fraction; `None` for other figures.
-    #[serde(skip)]
-    pub share: Option<Proportion>,
 }
 
-/// Builder of the figures of one cell.
-pub(crate) struct CellFigures {
-    pub(crate) cell: String,
-    pub(crate) seeds: Range<u64>,
-    /// `true` if the population is as large as the targets ask for.
-    pub(crate) full: bool,
-    pub(crate) all: Vec<Characteristic>,
-}
-
-impl CellFigures {
-    /// A statistic with a target.
-    pub(crate) fn judge(&mut self, figure: &str, target: Target, of: Statistic) {
-        let judgement = of.judged(target, self.full);
-        self.push(figure, Some(target), of, Some(judgement));
-    }
-
-    /// A statistic without a target.
-    pub(crate) fn note(&mut self, figure: &str, of: Statistic) {
-        self.push(figure, None, of, None);
-    }
-
-    /// A count that should be 0.
-    pub(crate) fn none(&mut self, figure: &str, count: usize, of: u64) {
-        self.judge(
-            figure,
-            Target::AtMost(0.0),
-            Statistic::Value(count as f64, of),
-        );
-    }
-
-    fn push(
-        &mut self,
-        figure: &str,
-        target: Option<Target>,
-        of: Statistic,
-        judged: Option<Judgement>,
-    ) {
-        let (measured, runs) = (of.value(), of.runs());
-        self.all.push(Characteristic {
-            cell: self.cell.clone(),
-            figure: figure.to_owned(),
-            target,
+impl Characteristic {
+    /// A statistic of a cell, which is as large as its targets ask for (`full`), or smaller.
+    pub(crate) fn of(cell: &str, seeds: &Range<u64>, full: bool, of: &Measure) -> Self {
+        let (measured, runs) = (of.statistic.value(), of.statistic.runs());
+        let judged = of
+            .target
+            .map(|(target, _)| of.statistic.judged(target, full));
+        Self {
+            cell: cell.to_owned(),
+            figure: of.figure.to_owned(),
+            target: of.target.map(|(target, _)| target),
             measured: measured.is_finite().then_some(measured),
-            interval: of.interval().filter(|_| runs > 0),
+            interval: of.statistic.interval().filter(|_| runs > 0),
             runs,
-            seeds: [self.seeds.start, self.seeds.end],
+            seeds: [seeds.start, seeds.end],
             holds: judged.and_then(Judgement::holds),
             too_few: judged == Some(Judgement::TooFew),
-            // The number of a bound is not its share.
-            share: of.proportion().filter(|share| share.share() == measured),
-        });
+        }
+    }
+}
+
+/// A statistic over the records of a cell.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Measure {
+    /// Name of the figure.
+    pub figure: &'static str,
+    /// The statistic.
+    pub statistic: Statistic,
+    /// Its target and the reason of it; `None` for information only.
+    pub target: Option<(Target, &'static str)>,
+}
+
+impl Measure {
+    /// A statistic without a target.
+    pub(crate) fn new(figure: &'static str, statistic: Statistic) -> Self {
+        Self {
+            figure,
+            statistic,
+            target: None,
+        }
+    }
+
+    /// The share of records for which `of` is true, among those for which it is anything.
+    pub(crate) fn share(
+        figure: &'static str,
+        records: &[&RecordScore],
+        of: impl Fn(&RecordScore) -> Option<bool>,
+    ) -> Self {
+        let share = Proportion::of(records.iter().filter_map(|record| of(record)));
+        Self::new(figure, Statistic::Share(share))
+    }
+
+    /// With a target, and its reason.
+    pub(crate) fn with_target(self, target: Target, reason: &'static str) -> Self {
+        Self {
+            target: Some((target, reason)),
+            ..self
+        }
+    }
+
+    pub(crate) fn at_least(self, least: f64, reason: &'static str) -> Self {
+        self.with_target(Target::AtLeast(least), reason)
+    }
+
+    pub(crate) fn at_most(self, most: f64, reason: &'static str) -> Self {
+        self.with_target(Target::AtMost(most), reason)
     }
 }

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::baseline::BaselineMethod;
 use crate::catalogue::same_or_equivalent;
+use crate::coefficient_score::CoefficientScore;
 use crate::record_score::{RecordScore, SAME_CLASS_COSINE};
 
 /// Name of the diagnosis of this project in tables.
@@ -52,76 +53,129 @@ impl ComparisonRow {
     }
 }
 
-/// Result of one method on one record.
-struct MethodResult {
-    detected: bool,
-    first_cosine: f64,
-    all_named: bool,
-    causes: usize,
-    hidden: usize,
+/// What one method says of one record.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Answer {
+    /// Whether it rejects the nominal model.
+    pub detected: bool,
+    /// Closeness of its first name to the first injected effect: 1 for that or an exact equivalent.
+    pub first_cosine: f64,
+    /// Whether all injected effects are among its names; two for the diagnosis in a set each.
+    pub all_named: bool,
+    /// Number of selected effects; for the diagnosis that of its sets.
+    pub causes: usize,
+    /// Number of names; for the diagnosis those of all members of its sets.
+    pub names: usize,
+    /// The coefficients of the model that it ends with.
+    pub coefficients: Option<CoefficientScore>,
+}
+
+impl Answer {
+    /// Of a baseline method, of the diagnosis for `None`; `None` if the method was not applied.
+    #[must_use]
+    pub fn of(method: Option<BaselineMethod>, record: &RecordScore) -> Option<Self> {
+        let Some(method) = method else {
+            let sets = record.findings.iter();
+            let first = record.hidden.first();
+            return Some(Self {
+                detected: record.verdict != "clean",
+                first_cosine: first.map_or(0.0, |hidden| hidden.first_cosine),
+                all_named: record.each_in_its_set(),
+                causes: record.findings.len(),
+                names: sets.map(|finding| 1 + finding.alternatives.len()).sum(),
+                coefficients: record.coefficients,
+            });
+        };
+        let mut asked = record.methods.iter();
+        let asked = asked.find(|asked| asked.method == method.name())?;
+        let names = &asked.result.names;
+        let named = |effect: &str| names.iter().any(|name| same_or_equivalent(name, effect));
+        Some(Self {
+            detected: asked.result.detected,
+            first_cosine: asked.first_cosine,
+            all_named: record.hidden.iter().all(|hidden| named(&hidden.effect)),
+            causes: names.len(),
+            names: names.len(),
+            coefficients: asked.coefficients,
+        })
+    }
 }
 
 /// All applied methods on the records of a cell, the diagnosis first.
 #[must_use]
 pub fn comparison(records: &[&RecordScore]) -> Vec<ComparisonRow> {
-    let own: Vec<MethodResult> = records
-        .iter()
-        .map(|record| MethodResult {
-            detected: record.verdict != "clean",
-            first_cosine: record
-                .hidden
-                .first()
-                .map_or(0.0, |hidden| hidden.first_cosine),
-            all_named: record.each_in_its_set(),
-            causes: record.findings.len(),
-            hidden: record.hidden.len(),
-        })
-        .collect();
-    let mut rows = vec![row(OWN_METHOD, true, &own)];
-    for method in BaselineMethod::ALL {
-        let results: Vec<MethodResult> = records
+    let rows = core::iter::once(None).chain(BaselineMethod::ALL.map(Some));
+    let row = |method: Option<BaselineMethod>| {
+        let answers = records
             .iter()
-            .filter_map(|record| {
-                let asked = record
-                    .methods
-                    .iter()
-                    .find(|asked| asked.method == method.name())?;
-                let names = &asked.result.names;
-                let named =
-                    |effect: &str| names.iter().any(|name| same_or_equivalent(name, effect));
-                Some(MethodResult {
-                    detected: asked.result.detected,
-                    first_cosine: asked.first_cosine,
-                    all_named: record.hidden.iter().all(|hidden| named(&hidden.effect)),
-                    causes: names.len(),
-                    hidden: record.hidden.len(),
-                })
-            })
-            .collect();
-        if !results.is_empty() {
-            rows.push(row(method.name(), method.identifies_effects(), &results));
-        }
-    }
-    rows
+            .filter_map(|record| Some((record.hidden.len(), Answer::of(method, record)?)));
+        let answers: Vec<(usize, Answer)> = answers.collect();
+        (method.is_none() || !answers.is_empty()).then(|| row(method, &answers))
+    };
+    rows.filter_map(row).collect()
 }
 
-fn row(method: &str, names: bool, results: &[MethodResult]) -> ComparisonRow {
-    let detected: Vec<&MethodResult> = results.iter().filter(|results| results.detected).collect();
-    let hides = results.iter().any(|results| results.hidden > 0);
-    let count = |of: &dyn Fn(&MethodResult) -> bool| {
-        (names && hides).then(|| detected.iter().filter(|results| of(results)).count() as u64)
-    };
-    let causes: Vec<f64> = detected
+/// The row of a method, from the number of injected effects and the answer of each record.
+fn row(method: Option<BaselineMethod>, answers: &[(usize, Answer)]) -> ComparisonRow {
+    let detected: Vec<&(usize, Answer)> = answers
         .iter()
-        .map(|results| results.causes as f64)
+        .filter(|(_, answer)| answer.detected)
         .collect();
+    let names = method.is_none_or(BaselineMethod::identifies_effects);
+    let hides = answers.iter().any(|(hidden, _)| *hidden > 0);
+    let count = |of: &dyn Fn(&(usize, Answer)) -> bool| {
+        (names && hides).then(|| detected.iter().filter(|answer| of(answer)).count() as u64)
+    };
+    let causes = || detected.iter().map(|(_, answer)| answer.causes as f64);
     ComparisonRow {
-        method: method.to_owned(),
-        runs: results.len() as u64,
+        method: method.map_or(OWN_METHOD, BaselineMethod::name).to_owned(),
+        runs: answers.len() as u64,
         detected: detected.len() as u64,
-        class_first: count(&|results| results.first_cosine >= SAME_CLASS_COSINE),
-        all_named: count(&|results| results.all_named),
-        too_many: count(&|results| results.causes > results.hidden),
-        mean_names: (names && !causes.is_empty()).then(|| mean(&causes)),
+        class_first: count(&|(_, answer)| answer.first_cosine >= SAME_CLASS_COSINE),
+        all_named: count(&|(_, answer)| answer.all_named),
+        too_many: count(&|(hidden, answer)| answer.causes > *hidden),
+        mean_names: (names && !detected.is_empty()).then(|| mean(causes())),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::baseline::BaselineResult;
+    use crate::record_score::BaselineScore;
+    use crate::record_score::tests::{found, pair};
+
+    #[test]
+    fn a_set_counts_by_its_members() {
+        let mut record = pair(vec![
+            found("gyro_y.ramp", &["accel_x.bias"]),
+            found("gyro_x.g_y", &[]),
+        ]);
+        record.methods = vec![BaselineScore {
+            method: "bic".to_owned(),
+            result: BaselineResult {
+                detected: true,
+                names: vec!["gyro_x.g_y".to_owned()],
+            },
+            first_cosine: 1.0,
+            coefficients: None,
+        }];
+        let of = |method| Answer::of(method, &record).map(|of| (of.causes, of.names, of.all_named));
+        assert_eq!(of(None), Some((2, 3, true)));
+        assert_eq!(of(Some(BaselineMethod::Bic)), Some((1, 1, false)));
+        // What was not applied has neither an answer nor a row.
+        assert_eq!(of(Some(BaselineMethod::Stls)), None);
+        let rows = comparison(&[&record]);
+        let told: Vec<_> = rows
+            .iter()
+            .map(|row| (row.method.as_str(), row.all_named, row.mean_names))
+            .collect();
+        assert_eq!(
+            told,
+            [
+                (OWN_METHOD, Some(1), Some(2.0)),
+                ("bic", Some(0), Some(1.0))
+            ]
+        );
     }
 }

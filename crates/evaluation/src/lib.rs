@@ -106,11 +106,11 @@ pub use calibration_summary::{BandedMean, CalibrationSummary, CoefficientSummary
 pub use calibration_trial::CalibrationTrial;
 pub use campaign::{Campaign, Failure, Fingerprint, Outcome, Progress, program};
 pub use catalogue::{constant_of_channel, effect_family, effect_of, same_or_equivalent};
-pub use cell_characteristics::characteristics;
+pub use cell_characteristics::{characteristics, measures};
 pub use characterise_report::{CellReport, CharacteriseReport, cell_campaign, cell_report};
-pub use characteristic::Characteristic;
+pub use characteristic::{Characteristic, Measure};
 pub use coefficient_score::CoefficientScore;
-pub use comparison::{ComparisonRow, OWN_METHOD, comparison};
+pub use comparison::{Answer, ComparisonRow, OWN_METHOD, comparison};
 pub use effect_family::{FamilyRow, families};
 pub use error::EvaluationError;
 #[cfg(feature = "field")]

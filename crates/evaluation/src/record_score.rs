@@ -32,6 +32,9 @@ pub struct RecordScore {
     pub nearest: Vec<(String, f64)>,
     /// Drift coefficients of the diagnosis against the true ones; `None` where they were not compared.
     pub coefficients: Option<CoefficientScore>,
+    /// Log score that the extended model gains in cross-validation, nats; `None` without one.
+    #[serde(default)]
+    pub gain_nats: Option<f64>,
     /// Results of the baseline methods.
     pub methods: Vec<BaselineScore>,
 }
@@ -80,6 +83,12 @@ pub struct FindingScore {
     /// Probability that the cause is not in the catalogue; `None` if the search was cut.
     #[serde(default)]
     pub none_of_these: Option<f64>,
+    /// Log score that it gains in cross-validation, nats; `None` where that was not asked for.
+    #[serde(default)]
+    pub gain_nats: Option<f64>,
+    /// Whether the extended model has it; `None` where there was no cross-validation.
+    #[serde(default)]
+    pub accepted: Option<bool>,
 }
 
 /// Result of a baseline method.
@@ -147,10 +156,10 @@ impl FindingScore {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
 
-    fn found(effect: &str, alternatives: &[&str]) -> FindingScore {
+    pub(crate) fn found(effect: &str, alternatives: &[&str]) -> FindingScore {
         FindingScore {
             effect: effect.to_owned(),
             z: 8.0,
@@ -162,6 +171,8 @@ mod tests {
             equivalents: Vec::new(),
             lacks_equivalents: false,
             none_of_these: None,
+            gain_nats: None,
+            accepted: None,
         }
     }
 
@@ -178,7 +189,7 @@ mod tests {
         }
     }
 
-    fn pair(findings: Vec<FindingScore>) -> RecordScore {
+    pub(crate) fn pair(findings: Vec<FindingScore>) -> RecordScore {
         RecordScore {
             hidden: vec![hidden("gyro_x.g_y"), hidden("gyro_y.ramp")],
             verdict: "effects-found".to_owned(),
@@ -189,6 +200,7 @@ mod tests {
             oracle_in_set: None,
             nearest: Vec::new(),
             coefficients: None,
+            gain_nats: None,
             methods: Vec::new(),
         }
     }

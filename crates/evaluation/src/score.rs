@@ -201,6 +201,10 @@ pub(crate) fn findings_score(found: &DiagnosisResult) -> RecordScore {
         oracle_in_set: None,
         nearest: nearest(&found.ranking),
         coefficients: None,
+        gain_nats: found
+            .gain
+            .as_ref()
+            .map(|gain| gain.cross_validated_log_score_nats),
         methods: Vec::new(),
     }
 }
@@ -248,6 +252,8 @@ fn finding_score(finding: &Finding) -> FindingScore {
             .collect(),
         lacks_equivalents: has_equivalents && finding.equivalents.is_empty(),
         none_of_these: finding.none_of_these,
+        gain_nats: finding.gain_nats,
+        accepted: finding.accepted,
     }
 }
 

@@ -1,10 +1,8 @@
 //! Instrument tests on simulated logs whose errors are known.
 
 mod allan;
-mod oracle;
 mod positions;
 mod rates;
-pub(crate) mod records;
 mod stops;
 mod unit;
 mod vertical;

@@ -25,6 +25,7 @@ mod naming;
 mod page;
 mod paper;
 mod plant_peers;
+mod records;
 mod report;
 mod resumable;
 mod topics;

@@ -1,22 +1,28 @@
-//! Operating characteristics of the diagnosis: detection and identification of injected effects, and
-//! false alarms. The cells are those of `gyrocal characterise`, which adds baseline methods.
+//! Cells of `gyrocal characterise`: detection and identification of injected effects, and false alarms. The records
+//! of a cell are diagnosed once, for the parts [`comparison`](crate::comparison) and [`gain`](crate::gain) too.
 
 mod cost;
-pub(crate) mod plan;
 
-use gyrocal_evaluation::{Characteristic, PopulationCell, cell_campaign, cell_report};
+use gyrocal_evaluation::{BaselineMethod, Measure, PopulationCell, RecordScore, measures};
 
 use crate::error::Error;
 use crate::figure::Figure;
-use crate::resumable::results;
-use crate::truth::Extent;
+use crate::harness::{Context, Population, Row, Seeds};
+use crate::harness::sources::{DIAGNOSIS, of};
 
-/// Number of records of each cell in the small version.
-const SMALL_RUNS: [(PopulationCell, u64); 11] = [
-    (PopulationCell::Clean, 4),
+/// The cells that usual methods are compared on: without an effect, and with one of eight sigmas of its own bound.
+pub(crate) const CLEAN: PopulationCell = PopulationCell::Clean;
+pub(crate) const WITH_EFFECT: PopulationCell = PopulationCell::Single(8);
+
+/// Number of their records that these methods are applied to.
+const COMPARED: u64 = 300;
+
+/// Cells with their number of records in the small version.
+const CELLS: [(PopulationCell, u64); 11] = [
+    (CLEAN, 4),
     (PopulationCell::Single(5), 1),
     (PopulationCell::Single(6), 1),
-    (PopulationCell::Single(8), 3),
+    (WITH_EFFECT, 3),
     (PopulationCell::Single(12), 1),
     (PopulationCell::LogUniform, 1),
     (PopulationCell::Pair, 1),
@@ -26,41 +32,52 @@ const SMALL_RUNS: [(PopulationCell, u64); 11] = [
     (PopulationCell::OutOfCatalogue, 1),
 ];
 
-/// All figures of the topic.
-pub(crate) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
-    let small = extent.small;
-    let mut figures = Vec::new();
-    for (cell, few) in SMALL_RUNS {
-        let seeds = 0..extent.records(cell.full_runs(), few);
-        let mut campaign = cell_campaign(cell, seeds.clone(), &[]);
-        if !small {
-            campaign = campaign.results(results("naming", &cell.name())?);
-        }
-        let outcome = campaign.run(|seed| cell.evaluate(seed, &[]), |_| ())?;
-        let report = cell_report(cell, &outcome, &seeds);
-        let all = report.characteristics.iter();
-        figures.extend(all.map(|characteristic| figure(&report.title, characteristic)));
+/// The records of a cell.
+pub(crate) fn population(cell: PopulationCell) -> Population<'static, RecordScore> {
+    let small = CELLS.iter().find(|(other, _)| *other == cell);
+    Population {
+        name: format!("cell-{}", cell.name()),
+        first: 0,
+        full: cell.full_runs(),
+        small: small.map_or(0, |(_, small)| *small),
+        sources: of(DIAGNOSIS, &[file!()]),
+        job: Box::new(move |seed| {
+            let is_compared = [CLEAN, WITH_EFFECT].contains(&cell);
+            let methods = match is_compared && seed % Seeds::REPORT < COMPARED {
+                true => &BaselineMethod::ALL[..],
+                false => &[],
+            };
+            Ok(cell.evaluate(seed, methods)?)
+        }),
     }
-    figures.extend(cost::figures(small)?);
+}
+
+/// All figures of the part.
+pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
+    let mut figures = Vec::new();
+    for (cell, _) in CELLS {
+        let population = population(cell);
+        let records = context.records(&population)?;
+        let records: Vec<&RecordScore> = records.records.iter().collect();
+        let rows = measures(cell, &records).into_iter();
+        let rows: Vec<Row<'_, RecordScore>> = rows.map(|measure| row(cell, measure)).collect();
+        figures.extend(context.measure(&population, &rows)?);
+    }
+    figures.extend(cost::figures(context.is_small())?);
     Ok(figures)
 }
 
-fn figure(title: &str, of: &Characteristic) -> Figure {
-    Figure {
-        name: format!("{title}: {}", of.figure),
-        target: of
-            .target
-            .map_or_else(String::new, |target| target.to_string()),
-        measured: match (of.measured, of.interval) {
-            (Some(value), Some([low, high])) => format!("{value:.3} ({low:.3} to {high:.3})"),
-            (Some(value), None) => format!("{value:.3}"),
-            (None, _) => "nothing to measure on".to_owned(),
-        },
-        runs: of.runs as usize,
-        seeds: format!("{}..{}", of.seeds[0], of.seeds[1]),
-        holds: of.holds,
-        too_few: of.too_few,
-        share: of.share,
-        ..Figure::default()
+fn row(cell: PopulationCell, measure: Measure) -> Row<'static, RecordScore> {
+    let Measure {
+        figure,
+        statistic,
+        target,
+    } = measure;
+    let row = Row::new(format!("{}: {figure}", cell.title()), move |_| {
+        statistic.clone()
+    });
+    match target {
+        Some((target, reason)) => row.with_target(target, reason),
+        None => row,
     }
 }

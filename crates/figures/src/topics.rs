@@ -10,8 +10,8 @@ use crate::harness::topic::{Part, Topic};
 use crate::truth::Extent;
 use crate::{
     any_plant, before, calibration, catalogue, comparison, diagnosis_ground, embedded, fleet, gain,
-    generator, house, kernel, logs, main_job, measured, naming, paper, plant_peers, report, truth,
-    uncertainty, watch,
+    generator, house, kernel, logs, main_job, measured, naming, paper, plant_peers, records,
+    report, truth, uncertainty, watch,
 };
 
 /// All topics.
@@ -105,25 +105,25 @@ pub(crate) const TOPICS: [Topic; 8] = [
             diagnosed(
                 "ground",
                 "The noise audit, and signatures against the simulation.",
-                |to| diagnosis_ground::figures(to.is_small()),
+                diagnosis_ground::figures,
             ),
             diagnosed(
                 "naming",
                 "Cells of `gyrocal characterise`: detection, names, sets, false alarms.",
-                |to| naming::figures(Extent::of(to)),
+                naming::figures,
             ),
             Part {
                 introduction: comparison::side_by_side,
                 ..diagnosed(
                     "comparison",
                     "The diagnosis beside the usual tests and selection methods, on the same records.",
-                    |to| comparison::figures(to.is_small()),
+                    comparison::figures,
                 )
             },
             diagnosed(
                 "gain",
-                "Gain of extended models: in cross-validation, in the coefficients, on a second record.",
-                |to| gain::figures(to.is_small()),
+                "Gain of extended models: in cross-validation, in the coefficients.",
+                gain::figures,
             ),
             hidden(
                 "setup",
@@ -182,17 +182,22 @@ pub(crate) const TOPICS: [Topic; 8] = [
     },
     Topic {
         name: "records",
-        about: "Several records of one platform, and planned runs.",
+        about: "Several records of one platform: together, planned, and predicted.",
         parts: &[
             diagnosed(
                 "several",
                 "Several records of one platform, diagnosed together.",
-                |to| logs::records::figures(Extent::of(to)),
+                records::several::figures,
             ),
             diagnosed(
                 "planning",
                 "Planned runs, made: predicted against actual sigmas and confidence sets.",
-                |to| naming::plan::figures(to.is_small()),
+                records::planning::figures,
+            ),
+            diagnosed(
+                "later",
+                "A second record, predicted by the extended model of a first.",
+                records::later::figures,
             ),
         ],
     },

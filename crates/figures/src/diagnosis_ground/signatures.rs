@@ -1,11 +1,11 @@
 //! Signatures of all effects against finite differences of the nonlinear simulation.
 
+use gyrocal_testkit::signature_differences::{Compared, compare};
 use gyrocal_truth::{Population, Scenario, Temperature};
 use rayon::prelude::*;
 
-use super::Error;
+use crate::error::Error;
 use crate::figure::Figure;
-use gyrocal_testkit::signature_differences::{Compared, compare};
 
 /// Seed of the population, and how many scenarios of it are compared.
 const POPULATION: u64 = 8;
@@ -30,52 +30,37 @@ pub(super) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
             ..Population::new(POPULATION).scenario(number)
         })
     };
-    let each: Vec<Vec<Compared>> = (0..scenarios)
-        .into_par_iter()
-        .map(of)
-        .collect::<Result<_, Error>>()?;
-    let all: Vec<Compared> = each.into_iter().flatten().collect();
-    let seeds = format!("population {POPULATION}, 0 to {}", scenarios - 1);
-    let figure = |name: &str, target: f64, errors: &[(f64, &str)]| {
+    let each: Result<Vec<Vec<Compared>>, Error> = (0..scenarios).into_par_iter().map(of).collect();
+    let (slopes, all): (Vec<Compared>, Vec<Compared>) =
+        each?.into_iter().flatten().partition(|one| one.is_of_slope);
+    let count = all.len() / scenarios as usize;
+    let worst = |name: &str, target: f64, of: &[Compared], error: fn(&Compared) -> Option<f64>| {
+        let errors = of.iter().filter_map(|one| Some((error(one)?, &*one.name)));
+        let errors: Vec<(f64, &str)> = errors.collect();
         let worst = errors.iter().max_by(|a, b| a.0.total_cmp(&b.0));
         let (error, of) = worst.copied().unwrap_or((f64::NAN, "none"));
-        let mut figure = Figure::within(name, [f64::NEG_INFINITY, target], error);
-        figure.measured = format!("{error:.1e} ({of})");
-        figure.over(errors.len(), seeds.clone())
+        Figure {
+            measured: format!("{error:.1e} ({of})"),
+            ..Figure::within(name, [f64::NEG_INFINITY, target], error)
+        }
+        .over(
+            errors.len(),
+            format!("population {POPULATION}, 0 to {}", scenarios - 1),
+        )
     };
-    let errors = |is_of_slope: bool| -> Vec<(f64, &str)> {
-        let own = all.iter().filter(|one| one.is_of_slope == is_of_slope);
-        own.map(|one| (one.error, &*one.name)).collect()
-    };
-    let slopes = errors(true);
-    let errors = errors(false);
-    let count = errors.len() / scenarios as usize;
-    let projected: Vec<(f64, &str)> = all
-        .iter()
-        .filter(|one| !one.is_of_slope)
-        .filter_map(|one| Some((one.projected?, &*one.name)))
-        .collect();
-    let mut left = figure(
-        "the same with the nine coefficients projected out, where a thousandth is left",
-        TARGET,
-        &projected,
-    );
-    // Not asked for: what is left of a signature is smaller than the signature.
-    left.target = String::new();
-    left.holds = None;
+    let own = |one: &Compared| Some(one.error);
+    let name =
+        format!("{count} signatures against the simulation: worst difference over norm, whitened");
+    let left = "the same with the nine coefficients projected out, where a thousandth is left";
+    let slope = "signatures of the rate of a logged temperature: the same difference";
     Ok(vec![
-        figure(
-            &format!(
-                "{count} signatures against the simulation: worst difference over norm, whitened"
-            ),
-            TARGET,
-            &errors,
-        ),
-        left,
-        figure(
-            "signatures of the rate of a logged temperature: the same difference",
-            TARGET_OF_SLOPE,
-            &slopes,
-        ),
+        worst(&name, TARGET, &all, own),
+        Figure {
+            // Not asked for: what is left of a signature is smaller than the signature.
+            target: String::new(),
+            holds: None,
+            ..worst(left, TARGET, &all, |one| one.projected)
+        },
+        worst(slope, TARGET_OF_SLOPE, &slopes, own),
     ])
 }

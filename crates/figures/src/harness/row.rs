@@ -114,7 +114,8 @@ impl<'a, R> Row<'a, R> {
         self.with_target(Target::Between(range), reason)
     }
 
-    fn with_target(self, target: Target, reason: &'static str) -> Self {
+    /// With a target.
+    pub(crate) fn with_target(self, target: Target, reason: &'static str) -> Self {
         Self {
             target: Some(target),
             reason,

@@ -7,12 +7,8 @@ use super::Error;
 use crate::cost::{Peak, on_one_core};
 use crate::figure::Figure;
 
-const THREE_DAYS_S: f64 = 3.0 * 86_400.0;
-
-/// Largest time for three days sampled each minute, s.
+/// Largest time for three days sampled each minute, and each second, s; largest memory of the process, MB.
 const MINUTES_S: f64 = 1.0;
-
-/// Largest time for three days sampled each second, s, and memory of the process, MB.
 const SECONDS_S: f64 = 30.0;
 const SECONDS_MB: f64 = 1000.0;
 
@@ -20,53 +16,35 @@ pub(super) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
     let minutes = simulation(60.0)?;
     let (first, minutes_s) = told(&minutes)?;
     let (second, again_s) = told(&minutes)?;
-    let mut time = Figure::at_most(
-        "three days at 60 s with a cause, whole diagnosis on one core",
-        MINUTES_S,
-        minutes_s.min(again_s),
-        "s",
-    )
-    .over(2, "1");
-    let same = Figure::truth(
-        "two diagnoses of one record are the same to the last bit",
-        first == second,
-    );
+    let name = "three days at 60 s with a cause, whole diagnosis on one core";
+    let mut time = Figure::at_most(name, MINUTES_S, minutes_s.min(again_s), "s").over(2, "1");
+    let name = "two diagnoses of one record are the same to the last bit";
+    let same = Figure::truth(name, first == second);
     if small {
         // Times on a machine that does other work as well say little: shown, not judged.
         time.holds = None;
         return Ok(vec![time, same]);
     }
     let seconds = simulation(1.0)?;
-    let rows = seconds.record.len();
     let peak = Peak::reset();
     let (_, seconds_s) = told(&seconds)?;
     // Where the kernel does not tell, nothing was measured, and so nothing holds.
     let peak_mb = peak.and_then(|peak| peak.read_mb()).unwrap_or(f64::NAN);
-    Ok(vec![
-        time,
-        same,
-        Figure::at_most(
-            &format!("three days at 1 s with a cause, {rows} rows, on one core"),
-            SECONDS_S,
-            seconds_s,
-            "s",
-        ),
-        Figure::at_most(
-            "the same: peak memory of the process",
-            SECONDS_MB,
-            peak_mb,
-            "MB",
-        ),
-    ])
+    let rows = seconds.record.len();
+    let name = format!("three days at 1 s with a cause, {rows} rows, on one core");
+    let long = Figure::at_most(&name, SECONDS_S, seconds_s, "s");
+    let name = "the same: peak memory of the process";
+    let memory = Figure::at_most(name, SECONDS_MB, peak_mb, "MB");
+    Ok(vec![time, same, long, memory])
 }
 
-/// A term of 14 standard deviations at one row a minute.
+/// Three days with a term of 14 standard deviations at one row a minute.
 fn simulation(interval_s: f64) -> Result<Simulation, Error> {
     Ok(simulate(&Scenario {
         seed: 1,
         coefficients: Coefficients::PAPER_LIKE,
         interval_s,
-        duration_s: THREE_DAYS_S - interval_s,
+        duration_s: 3.0 * 86_400.0 - interval_s,
         hidden: vec![Hidden::new("gyro_y.g_z", &[("size", 1e-3)])?],
         ..Scenario::default()
     })?)
@@ -78,7 +56,7 @@ fn told(simulation: &Simulation) -> Result<(String, f64), Error> {
     let (found, seconds) =
         on_one_core(|| diagnose(&simulation.record, &simulation.bench, &options));
     let found = found?;
-    let all = (&found.result, found.nominal.values());
     // Numbers are written with as many digits as tell them from all others.
-    Ok((format!("{all:?}"), seconds))
+    let all = format!("{:?}", (&found.result, found.nominal.values()));
+    Ok((all, seconds))
 }

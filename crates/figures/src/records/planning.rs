@@ -1,37 +1,35 @@
 //! Planned runs, made: predicted against actual sigmas and confidence sets.
 
 use gyrocal::effect::EffectKind;
-use gyrocal_calibration::{NoiseModel, Options, Run, calibrate_runs};
+use gyrocal_calibration::{NoiseModel, Options, calibrate_runs};
 use gyrocal_design::{NamedCause, PlanOptions, Proposal, compare, plan};
 use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
-use gyrocal_evaluation::{constant_of_channel, effect_of, inject_any};
-use gyrocal_statistics::Judgement;
+use gyrocal_evaluation::{Statistic, constant_of_channel, effect_of, inject_any};
 use gyrocal_statistics::deviates::Draw;
-use gyrocal_truth::{Hidden, InitialAttitude, Population, Scenario, Simulation, simulate};
+use gyrocal_truth::{
+    Hidden, InitialAttitude, Population as Platforms, Scenario, Simulation, simulate,
+};
 use serde::{Deserialize, Serialize};
 
-use super::Error;
+use super::run;
+use crate::error::Error;
 use crate::figure::Figure;
-use crate::resumable;
+use crate::harness::{Context, Population, Row};
+use crate::topics::{DIAGNOSIS, of};
 
-/// Seed of the population of records.
-const POPULATION: u64 = 78;
+/// Seed of the platforms and their records.
+const PLATFORMS: u64 = 78;
 
-/// Seeds of records for the sigmas, and of records with an injected effect of the given strength, at
-/// which confidence sets are large.
-const SIGMA_SEEDS: [u64; 2] = [600_000, 200];
-const SET_SEEDS: [u64; 2] = [610_000, 300];
+/// Strength of an injected effect at which confidence sets are large.
 const STRENGTH: f64 = 6.0;
-
-/// Numbers of records in the small version.
-const SMALL: [u64; 2] = [3, 6];
 
 /// Duration of the short next run, as a fraction of the record: it distinguishes some of the
 /// alternatives.
 const SHORT: f64 = 1.0 / 12.0;
 
-/// Ratios that are within 20 %.
+/// Ratios that are within 20 %, and why.
 const WITHIN: [f64; 2] = [0.8, 1.2];
+const WITHIN_REASON: &str = "a plan is chosen by differences that are larger";
 
 /// Result of a planned run that was made.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -49,83 +47,59 @@ struct Sets {
     after: [[f64; 2]; 2],
 }
 
-/// All figures of planning.
-pub(crate) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
-    let runs = if small {
-        SMALL
-    } else {
-        [SIGMA_SEEDS[1], SET_SEEDS[1]]
+/// All figures of the part.
+pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
+    let extreme = |which: &str, of: fn(&[Sigmas]) -> f64| {
+        let name = format!("planned run: {which} of the nine sigmas over the predicted, any run");
+        let value = move |all: &[Sigmas]| Statistic::Value(of(all), all.len() as u64);
+        Row::new(name, value).between(WITHIN, WITHIN_REASON)
     };
-    let seeds = SIGMA_SEEDS[0]..SIGMA_SEEDS[0] + runs[0];
-    let outcome =
-        resumable::campaign("naming", "plan-sigmas", seeds.clone(), small)?.run(sigmas, |_| ())?;
-    let ratios: Vec<[f64; 2]> = outcome.successes().map(|(_, case)| case.ratios).collect();
-    let least = ratios.iter().map(|r| r[0]).fold(f64::INFINITY, f64::min);
-    let most = ratios.iter().map(|r| r[1]).fold(0.0, f64::max);
-    let mut figures = Vec::new();
-    for (name, extreme) in [("least", least), ("largest", most)] {
-        figures.push(
-            Figure::within(
-                &format!("planned run: {name} of the nine sigmas over the predicted, any run"),
-                WITHIN,
-                extreme,
-            )
-            .over(ratios.len(), format!("{seeds:?}")),
-        );
-    }
-    let failed = outcome.failures().count();
-    let seeds = SET_SEEDS[0]..SET_SEEDS[0] + runs[1];
-    let outcome =
-        resumable::campaign("naming", "plan-sets", seeds.clone(), small)?.run(sets, |_| ())?;
-    let cases: Vec<&Sets> = outcome
-        .successes()
-        .map(|(_, case)| case)
-        .filter(|case| case.now.is_some())
-        .collect();
-    let mean = |of: &dyn Fn(&Sets) -> f64| {
-        let values: Vec<f64> = cases.iter().map(|case| of(case)).collect();
-        gyrocal_statistics::mean(&values)
-    };
-    figures.push(Figure::note(
-        "planned run: mean size of named sets of two or more before it",
-        format!("{:.2}", mean(&|case| case.now.unwrap_or(0.0))),
-    ));
-    for (index, length) in ["a twelfth of the record", "as long as the record"]
+    let ratios = [
+        extreme("least", |all| {
+            all.iter()
+                .map(|one| one.ratios[0])
+                .fold(f64::INFINITY, f64::min)
+        }),
+        extreme("largest", |all| {
+            all.iter().map(|one| one.ratios[1]).fold(0.0, f64::max)
+        }),
+    ];
+    let name = "planned run: mean size of named sets of two or more before it";
+    let mut sizes = vec![Row::mean(name, |of: &Sets| of.now)];
+    for (which, length) in ["a twelfth of the record", "as long as the record"]
         .into_iter()
         .enumerate()
     {
-        let [predicted, found] = [0, 1].map(|which| mean(&|case| case.after[index][which]));
-        let name = format!("planned run {length}: mean size of the set over the predicted");
-        let mut figure = Figure::within(&name, WITHIN, found / predicted)
-            .over(cases.len(), format!("{seeds:?}"));
-        if small {
-            let missed = |case: &Sets| case.after[index][1] - case.after[index][0];
-            let square = mean(&|case| (missed(case) - (found - predicted)).powi(2));
-            let error = (square / cases.len() as f64).sqrt();
-            // Two-sided 90 % for met and 99.9 % for missed.
-            let off = (found - predicted).abs() - 0.2 * predicted;
-            figure = figure.judged(Judgement::of(off + 1.645 * error <= 0.0, off > 3.3 * error));
-        }
-        figures.push(figure);
-        figures.push(Figure::note(
-            &format!("planned run {length}: mean size of the set"),
-            format!("{found:.2}, predicted {predicted:.2}"),
-        ));
+        let name = format!("planned run {length}: mean size of the set");
+        let after = move |of: &Sets| of.now.map(|_| of.after[which]);
+        let ratio = Row::ratio(format!("{name} over the predicted"), move |of| {
+            let [predicted, found] = after(of)?;
+            Some([found, predicted])
+        });
+        sizes.push(ratio.between(WITHIN, WITHIN_REASON));
+        sizes.push(Row::mean(name, move |of| Some(after(of)?[1])));
     }
-    let failed = failed + outcome.failures().count();
-    if failed > 0 {
-        figures.push(Figure::note(
-            "planned run: records that could not be planned for",
-            failed.to_string(),
-        ));
-    }
+    let mut figures = context.measure(
+        &population("planned sigmas", 600_000, [200, 3], sigmas),
+        &ratios,
+    )?;
+    figures.extend(context.measure(&population("planned sets", 610_000, [300, 6], sets), &sizes)?);
     Ok(figures)
 }
 
-fn run(simulation: &Simulation) -> Run<'_> {
-    Run {
-        record: &simulation.record,
-        bench: &simulation.bench,
+fn population<R: 'static>(
+    name: &str,
+    first: u64,
+    [full, small]: [u64; 2],
+    job: fn(u64) -> Result<R, Error>,
+) -> Population<'static, R> {
+    Population {
+        name: name.to_owned(),
+        first,
+        full,
+        small,
+        sources: of(DIAGNOSIS, &[file!()]),
+        job: Box::new(job),
     }
 }
 
@@ -133,7 +107,7 @@ fn run(simulation: &Simulation) -> Run<'_> {
 fn scenario(seed: u64) -> Scenario {
     let mut scenario = Scenario {
         duration_s: 2.0 * 86_400.0,
-        ..Population::new(POPULATION).scenario(seed)
+        ..Platforms::new(PLATFORMS).scenario(seed)
     };
     scenario.prior.turn_on_sigma_deg_per_h = [0.01 * (seed % 2) as f64; 3];
     scenario

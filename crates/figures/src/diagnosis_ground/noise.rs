@@ -1,0 +1,303 @@
+//! The noise audit over clean records, over noise other than declared, and over physical causes; whole diagnoses of
+//! rounded readings and of outliers. Those of other noise are in the part `clean`.
+
+use std::collections::BTreeMap;
+
+use gyrocal::EFFECTS;
+use gyrocal::effect::{EffectKind, Enters, NoiseProperty};
+use gyrocal_diagnosis::result::FindingKind;
+use gyrocal_diagnosis::{
+    AuditOptions, DiagnoseOptions, NoiseAudit, Outlier, audit_noise, diagnose,
+};
+use gyrocal_testkit::noise_faults::{Fault, FaultyRecord, faulty_record};
+use gyrocal_truth::{Population as Platforms, Term};
+use serde::{Deserialize, Serialize};
+
+use crate::error::Error;
+use crate::figure::Figure;
+use crate::harness::{Context, Population, Row};
+use crate::topics::{DIAGNOSIS, of};
+
+/// Seed of the platforms and their records.
+const PLATFORMS: u64 = 20;
+
+/// Records, and those of the small version: clean ones, of each kind of noise, of each physical cause.
+const CLEAN: [u64; 2] = [2000, 60];
+const EACH: [u64; 2] = [1000, 24];
+const CAUSE: [u64; 2] = [100, 8];
+
+/// Least share of records with the right finding, and with the right size; least F1 score.
+const RIGHT: f64 = 0.95;
+const RIGHT_REASON: &str = "one of twenty may be missed, or have another name or size";
+
+/// A kind of noise: name, fault, and the property of each accelerometer that the audit must find, and no other.
+type Kind = (&'static str, Fault, NoiseProperty);
+
+/// All kinds; the first two are diagnosed as a whole.
+const KINDS: [Kind; 5] = [
+    (
+        "LSB of 3 sigma",
+        Fault::Quantised(3.0),
+        NoiseProperty::Quantisation,
+    ),
+    (
+        "0.5 % outliers of 8 sigma",
+        Fault::Outliers(0.005, 8.0),
+        NoiseProperty::Outliers,
+    ),
+    (
+        "AR(1) of 0.3",
+        Fault::Coloured(0.3),
+        NoiseProperty::Correlation,
+    ),
+    (
+        "sigma 1.2 of declared",
+        Fault::Ratio(1.2),
+        NoiseProperty::Level,
+    ),
+    (
+        "sigma 0.8 of declared",
+        Fault::Ratio(0.8),
+        NoiseProperty::Level,
+    ),
+];
+
+/// Physical causes far larger than any that must be found; the audit of noise should not react. They are not in the
+/// catalogue, and made for each record.
+const CAUSES: [(&str, fn() -> Term); 8] = [
+    ("a step of 0.01 deg/h", || drift_step(0.01)),
+    ("a step of 0.3 deg/h", || drift_step(0.3)),
+    ("an accelerometer's step of 40 sigma", || {
+        Term::Output(Box::new(|m| {
+            [if m.time_s > 1e5 { 4e-4 } else { 0.0 }, 0.0, 0.0]
+        }))
+    }),
+    ("squares of 1e-4 g/g²", || {
+        Term::Output(Box::new(|m| m.accel_g.map(|a| 1e-4 * a * a)))
+    }),
+    ("a tone of 0.2 sigma with a period of 7 rows", || {
+        Term::Output(Box::new(|m| [2e-6 * (m.time_s / 67.0).sin(), 0.0, 0.0]))
+    }),
+    ("a tone of 5 sigma with a period of 7 rows", || {
+        Term::Output(Box::new(|m| [5e-5 * (m.time_s / 67.0).sin(), 0.0, 0.0]))
+    }),
+    ("a tone of 0.01 deg/h with a period of 1 h", || {
+        Term::Drift(Box::new(|m| [0.01 * (m.time_s * 1.7e-3).sin(), 0.0, 0.0]))
+    }),
+    ("friction of 0.05 deg/h", || {
+        Term::Drift(Box::new(|m| m.accel_g.map(|a| 0.05 * a.signum())))
+    }),
+];
+
+fn drift_step(size_deg_per_h: f64) -> Term {
+    Term::Drift(Box::new(move |m| {
+        let on = if m.time_s > 1e5 { 1.0 } else { 0.0 };
+        [0.0, on * size_deg_per_h, 0.0]
+    }))
+}
+
+/// Result of the audit of one record.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Audited {
+    /// Ids of the findings, in alphabetical order.
+    found: Vec<String>,
+    /// `true` if the sizes are within their limits.
+    sized: bool,
+    /// F1 score of the outliers.
+    f1: f64,
+}
+
+pub(super) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
+    let alarm = Row::bound(
+        "clean records: alarms of the noise audit, one-sided 95 % upper bound",
+        |one: &Audited| !one.found.is_empty(),
+    )
+    .at_most(
+        0.01,
+        "0.25 % are promised: of 2000 five are due, and 12 within the bound",
+    );
+    let mut figures = context.measure(&audits("clean", CLEAN, Fault::None, None), &[alarm])?;
+    for kind in &KINDS {
+        let audits = audits(kind.0, EACH, kind.1, None);
+        figures.extend(context.measure(&audits, &of_kind(kind))?);
+    }
+    for (name, term) in CAUSES {
+        let found = Row::words(format!("{name}: audits that find anything"), alarms);
+        let audits = audits(name, CAUSE, Fault::None, Some(term));
+        figures.extend(context.measure(&audits, &[found])?);
+    }
+    figures.extend(context.measure(&wholes(), &of_wholes())?);
+    Ok(figures)
+}
+
+/// Audits of records with a fault of the noise or with a term.
+fn audits(
+    name: &str,
+    [full, small]: [u64; 2],
+    fault: Fault,
+    term: Option<fn() -> Term>,
+) -> Population<'static, Audited> {
+    Population {
+        name: format!("audit {name}"),
+        first: 0,
+        full,
+        small,
+        sources: of(DIAGNOSIS, &[file!()]),
+        job: Box::new(move |number| {
+            let terms: Vec<Term> = term.iter().map(|make| make()).collect();
+            audited(&faulty_record(&three_days(), number, fault, &terms))
+        }),
+    }
+}
+
+/// Three days with a row each minute, at any latitude and attitude, with drift.
+fn three_days() -> Platforms {
+    let mut platforms = Platforms::new(PLATFORMS);
+    platforms.duration_days = [3.0, 3.0];
+    platforms
+}
+
+fn of_kind((name, fault, property): &Kind) -> Vec<Row<'static, Audited>> {
+    let near = match fault {
+        Fault::Coloured(_) => "found with its correlation within 0.03",
+        _ => "found with its size within 5 %",
+    };
+    let expected = accelerometer_noise(*property);
+    let right = move |one: &Audited| Some(one.found == expected);
+    let mut rows = vec![
+        Row::share(
+            format!("{name}: the right noise findings, and no others"),
+            right,
+        ),
+        Row::share(format!("{name}: {near}"), |one: &Audited| Some(one.sized)),
+    ];
+    if matches!(fault, Fault::Outliers(..)) {
+        let f1 = |one: &Audited| Some(one.f1);
+        rows.push(Row::mean(format!("{name}: mean F1"), f1));
+    }
+    let rows = rows.into_iter();
+    rows.map(|row| row.at_least(RIGHT, RIGHT_REASON)).collect()
+}
+
+/// Number of records with findings, and the findings.
+fn alarms(audited: &[Audited]) -> String {
+    let mut named: BTreeMap<&str, usize> = BTreeMap::new();
+    for effect in audited.iter().flat_map(|one| &one.found) {
+        *named.entry(effect).or_default() += 1;
+    }
+    let named = named
+        .into_iter()
+        .map(|(effect, count)| format!("{effect} {count}"));
+    let named: Vec<String> = named.collect();
+    let count = audited.iter().filter(|one| !one.found.is_empty()).count();
+    match named.as_slice() {
+        [] => format!("{count} of {}", audited.len()),
+        named => format!("{count} of {} ({})", audited.len(), named.join(", ")),
+    }
+}
+
+fn audited(case: &FaultyRecord) -> Result<Audited, Error> {
+    let options = AuditOptions::default();
+    let audit = audit_noise(&case.record, &case.innovations, &case.declared, &options)?;
+    let findings = audit.findings.iter();
+    let mut found: Vec<String> = findings.map(|one| one.effect.to_owned()).collect();
+    found.sort_unstable();
+    Ok(Audited {
+        found,
+        sized: is_sized(case.fault, &audit),
+        f1: f1(case, &audit),
+    })
+}
+
+/// F1 score of found against true outliers; 1 if there are neither.
+fn f1(case: &FaultyRecord, audit: &NoiseAudit) -> f64 {
+    let hit = |outlier: &&Outlier| case.outliers.contains(&(outlier.row, outlier.axis));
+    let hits = audit.outliers.iter().filter(hit).count();
+    match case.outliers.len() + audit.outliers.len() {
+        0 => 1.0,
+        both => 2.0 * hits as f64 / both as f64,
+    }
+}
+
+/// `true` if each finding of a fault has its size within 5 %, a correlation within 0.03.
+fn is_sized(fault: Fault, audit: &NoiseAudit) -> bool {
+    let each = |property: NoiseProperty, parameter: usize, truth: f64, tolerance: f64| {
+        accelerometer_noise(property).iter().all(|effect| {
+            audit.finding(effect).is_some_and(|finding| {
+                (finding.parameters[parameter].estimate - truth).abs() <= tolerance
+            })
+        })
+    };
+    match fault {
+        Fault::None | Fault::GyroRatio(_) => audit.findings.is_empty(),
+        Fault::Quantised(step) => {
+            let step_g = step * 1e-5;
+            each(NoiseProperty::Quantisation, 0, step_g, 0.05 * step_g)
+        }
+        Fault::Outliers(_, size) => {
+            each(NoiseProperty::Outliers, 1, size * 1e-5, 0.05 * size * 1e-5)
+        }
+        Fault::Coloured(correlation) => each(NoiseProperty::Correlation, 0, correlation, 0.03),
+        Fault::Ratio(ratio) => each(NoiseProperty::Level, 0, ratio, 0.05 * ratio),
+    }
+}
+
+/// Ids of the effects that are a property of the noise of accelerometers, in alphabetical order.
+fn accelerometer_noise(property: NoiseProperty) -> Vec<&'static str> {
+    let mut ids: Vec<&str> = EFFECTS
+        .iter()
+        .filter(|effect| effect.kind == EffectKind::Noise(property))
+        .filter(|effect| matches!(effect.enters, Enters::Outputs(_)))
+        .map(|effect| effect.id)
+        .collect();
+    ids.sort_unstable();
+    ids
+}
+
+/// Result of the whole diagnosis of one record.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Whole {
+    /// `true` if there is a physical finding.
+    is_physical: bool,
+    /// `true` if the noise findings are the right ones, and no others.
+    is_right: bool,
+}
+
+/// Whole diagnoses of the first two kinds in turn; their numbers are above those of the audits.
+fn wholes() -> Population<'static, Whole> {
+    Population {
+        name: "whole noise".to_owned(),
+        first: 10_000,
+        full: 100,
+        small: 6,
+        sources: of(DIAGNOSIS, &[file!()]),
+        job: Box::new(|number| {
+            let (_, fault, property) = KINDS[(number % 2) as usize];
+            let case = faulty_record(&three_days(), number, fault, &[]);
+            let bench = three_days().scenario(number).bench();
+            let found = diagnose(&case.record, &bench, &DiagnoseOptions::default())?.result;
+            let noise = found.of_kind(FindingKind::Noise);
+            let mut noise: Vec<&str> = noise.map(|finding| finding.effect.as_str()).collect();
+            noise.sort_unstable();
+            Ok(Whole {
+                is_physical: found.causes().next().is_some(),
+                is_right: noise == accelerometer_noise(property),
+            })
+        }),
+    }
+}
+
+fn of_wholes() -> [Row<'static, Whole>; 2] {
+    let name = |what: &str| format!("rounded readings, outliers: whole diagnoses with {what}");
+    [
+        Row::share(name("a physical finding"), |one: &Whole| {
+            Some(one.is_physical)
+        })
+        .at_most(0.01, "the level is 1 %"),
+        Row::share(
+            name("the right noise findings, and no others"),
+            |one: &Whole| Some(one.is_right),
+        )
+        .at_least(RIGHT, RIGHT_REASON),
+    ]
+}

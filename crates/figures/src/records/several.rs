@@ -1,0 +1,275 @@
+//! Several records of one platform, diagnosed together.
+
+use gyrocal::Effect;
+use gyrocal::effect::{EffectKind, Enters};
+use gyrocal_diagnosis::result::Finding;
+use gyrocal_diagnosis::{
+    DiagnoseOptions, Gate, RecordToDiagnose, Verdict, diagnose, diagnose_together,
+};
+use gyrocal_evaluation::{InjectedEffect, effect_of, same_or_equivalent, testable_effects};
+use gyrocal_setup::PlatformKind;
+use gyrocal_statistics::deviates::Draw;
+use gyrocal_truth::{Coefficients, InitialAttitude, Scenario, Simulation, simulate};
+use serde::{Deserialize, Serialize};
+
+use super::{oracle, run};
+use crate::error::Error;
+use crate::figure::Figure;
+use crate::harness::{Context, Population, Row};
+use crate::topics::{DIAGNOSIS, of};
+
+/// File of the oracle.
+const ORACLE: &str = "crates/figures/src/records/oracle.rs";
+
+/// Purpose of the stream of draws.
+const EFFECT: u64 = 1810;
+
+/// A population of platforms with a hidden cause.
+struct Hidden {
+    name: &'static str,
+    first: u64,
+    small: u64,
+    /// Number of records of each platform.
+    records: u64,
+    /// Root of the mean square of the strengths in the records.
+    strength: f64,
+    /// Least share of sets that hold the cause, and why.
+    found: f64,
+    reason: &'static str,
+    /// Largest mean size of the set over an oracle's.
+    over_oracle: Option<f64>,
+}
+
+const HIDDEN: [Hidden; 2] = [
+    Hidden {
+        name: "two records, a term with d = 8 in each",
+        first: 850_000,
+        small: 4,
+        records: 2,
+        strength: 8.0,
+        found: 0.99,
+        reason: "eleven sigmas together; sets of 95 % are cut by the likeliest names",
+        over_oracle: Some(1.1),
+    },
+    Hidden {
+        name: "four records, a term with d = 4 in each",
+        first: 860_000,
+        small: 2,
+        records: 4,
+        strength: 4.0,
+        found: 0.95,
+        reason: "sets of 95 %",
+        over_oracle: None,
+    },
+];
+
+/// Size for which strengths are computed, in typical sizes: small against the nominal terms.
+const UNIT: f64 = 0.01;
+
+/// Least strength of that size in any of the records: below, the records do not show the effect.
+const LEAST: f64 = 1e-6;
+
+/// Result for records with a hidden cause.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Named {
+    /// Whether a confidence set of the records together holds it.
+    together: bool,
+    /// Size of that set.
+    set: usize,
+    /// Size of the set of the first record alone, if it finds anything.
+    alone: Option<usize>,
+    /// Whether the cause is a function of time or temperature beside force.
+    in_time: bool,
+    /// Members of the set that have an onset or a time constant.
+    shapes: usize,
+    /// Expected size of an oracle's set, without such members.
+    oracle: Option<f64>,
+}
+
+/// All figures of the part.
+pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
+    let mut figures = Vec::new();
+    for cell in &HIDDEN {
+        figures.extend(context.measure(&population(cell), &rows(cell))?);
+    }
+    let clean = Population {
+        name: "four clean records".to_owned(),
+        first: 870_000,
+        full: 2000,
+        small: 2,
+        sources: of(DIAGNOSIS, &[file!(), ORACLE]),
+        job: Box::new(is_alarm),
+    };
+    let name = "four clean records: false alarms, upper bound of 95 %";
+    let alarms = Row::bound(name, |alarm: &bool| *alarm).at_most(
+        0.02,
+        "the level is 1 %: of 2000 twenty are due, and 27 within the bound",
+    );
+    figures.extend(context.measure(&clean, &[alarms])?);
+    Ok(figures)
+}
+
+fn population(cell: &Hidden) -> Population<'_, Named> {
+    Population {
+        name: cell.name.to_owned(),
+        first: cell.first,
+        full: 1000,
+        small: cell.small,
+        sources: of(DIAGNOSIS, &[file!(), ORACLE]),
+        job: Box::new(|seed| hidden(seed, cell.records, cell.strength)),
+    }
+}
+
+fn rows(cell: &Hidden) -> Vec<Row<'_, Named>> {
+    let name = |what: &str| format!("{}: {what}", cell.name);
+    // Of terms that are constant in time, and of the others.
+    let over_oracle = |what: &str, in_time: bool| {
+        Row::ratio(name(what), move |one: &Named| {
+            let is_of_these = one.together && one.in_time == in_time;
+            let own = (one.set - one.shapes) as f64;
+            one.oracle
+                .filter(|_| is_of_these)
+                .map(|oracle| [own, oracle])
+        })
+    };
+    let what = "mean size of the set over an oracle's, members without onset or time constant";
+    let constant = over_oracle(what, false);
+    let number = |what: &str, of: fn(&Named) -> Option<usize>| {
+        Row::mean(name(what), move |one| Some(of(one)? as f64))
+    };
+    vec![
+        Row::share(name("found"), |one: &Named| Some(one.together))
+            .at_least(cell.found, cell.reason),
+        match cell.over_oracle {
+            Some(most) => constant.at_most(most, "a tenth for levels of noise that are estimated"),
+            None => constant,
+        },
+        over_oracle("the same of causes in time or temperature", true),
+        number(
+            "mean number of members with onset or time constant beside these",
+            |one| one.together.then_some(one.shapes),
+        ),
+        number("mean size of the set", |one| {
+            one.together.then_some(one.set)
+        }),
+        number("mean size of the set of the first record alone", |one| {
+            one.alone
+        }),
+    ]
+}
+
+/// A day at a random attitude, of the platform and the record of a seed.
+fn scenario(seed: u64, record: u64) -> Scenario {
+    Scenario {
+        seed: 16 * seed + record,
+        coefficients: Coefficients::PAPER_LIKE,
+        initial: InitialAttitude::Random,
+        duration_s: 86_400.0,
+        interval_s: 300.0,
+        ..Scenario::default()
+    }
+}
+
+fn scenarios(seed: u64, records: u64) -> Vec<Scenario> {
+    (0..records).map(|record| scenario(seed, record)).collect()
+}
+
+/// Records with a constant term of forces or outputs, of one size in all of them: the root of the mean square
+/// of its strengths is `strength`.
+fn hidden(seed: u64, records: u64, strength: f64) -> Result<Named, Error> {
+    let mut scenarios = scenarios(seed, records);
+    let mut draw = Draw::new(seed, EFFECT);
+    let is_term = |effect: &&Effect| {
+        effect.has_term()
+            && effect.shape().is_none()
+            && matches!(effect.enters, Enters::Rates(_) | Enters::Outputs(_))
+    };
+    let effects: Vec<&'static Effect> = testable_effects(&scenarios[0])
+        .into_iter()
+        .filter(is_term)
+        .collect();
+    let (effect, sizes, own) = loop {
+        let effect = *draw.one_of(&effects);
+        let sizes: Vec<f64> = effect
+            .sizes()
+            .map(|_| UNIT * effect.typical_size * draw.normal())
+            .collect();
+        let of_unit = InjectedEffect {
+            effect,
+            sizes: sizes.clone(),
+            shape: None,
+        };
+        let strengths: Vec<f64> = scenarios
+            .iter()
+            .map(|scenario| of_unit.strength(scenario))
+            .collect::<Result<_, _>>()?;
+        // Every record has to show it.
+        if strengths.iter().all(|own| *own > LEAST) {
+            let squares: f64 = strengths.iter().map(|own| own * own).sum();
+            break (effect, sizes, (squares / records as f64).sqrt());
+        }
+    };
+    let injected = InjectedEffect {
+        effect,
+        sizes: sizes.iter().map(|size| size * strength / own).collect(),
+        shape: None,
+    };
+    for scenario in &mut scenarios {
+        scenario.hidden = vec![injected.to_hidden()?];
+    }
+    let simulations = simulated(&scenarios)?;
+    let options = DiagnoseOptions::default();
+    let together = diagnose_together(checked(&simulations, &options), &options, |_| ())?.result;
+    let mut sets = together.causes().map(members);
+    let set = sets.find(|set| set.iter().any(|id| same_or_equivalent(effect.id, id)));
+    let shapes = set.iter().flatten();
+    let shapes = shapes.filter(|id| effect_of(id).is_some_and(|member| member.shape().is_some()));
+    let first = diagnose(&simulations[0].record, &simulations[0].bench, &options)?;
+    Ok(Named {
+        together: set.is_some(),
+        set: set.as_ref().map_or(0, Vec::len),
+        alone: first
+            .result
+            .causes()
+            .next()
+            .map(|cause| members(cause).len()),
+        in_time: effect.kind != EffectKind::Constant,
+        shapes: shapes.count(),
+        oracle: oracle::set_size(&scenarios[0], &simulations, &injected)?,
+    })
+}
+
+/// The ids of the set of a finding.
+fn members(cause: &Finding) -> Vec<&str> {
+    let others = cause.alternatives.iter().map(|other| &*other.effect);
+    core::iter::once(&*cause.effect).chain(others).collect()
+}
+
+/// Whether four records of the nominal model show anything together.
+fn is_alarm(seed: u64) -> Result<bool, Error> {
+    let simulations = simulated(&scenarios(seed, 4))?;
+    let options = DiagnoseOptions::default();
+    let found = diagnose_together(checked(&simulations, &options), &options, |_| ())?;
+    Ok(found.result.verdict != Verdict::Clean)
+}
+
+fn simulated(scenarios: &[Scenario]) -> Result<Vec<Simulation>, Error> {
+    Ok(scenarios.iter().map(simulate).collect::<Result<_, _>>()?)
+}
+
+fn checked<'a>(
+    simulations: &'a [Simulation],
+    options: &DiagnoseOptions,
+) -> Vec<RecordToDiagnose<'a>> {
+    let records = simulations.iter().enumerate();
+    let checked = records.map(|(index, simulation)| RecordToDiagnose {
+        name: format!("record {}", index + 1),
+        gate: Gate::new(
+            PlatformKind::Stabilised,
+            &run(simulation),
+            &options.calibration,
+        ),
+        bench: &simulation.bench,
+    });
+    checked.collect()
+}
