@@ -10,9 +10,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
 use crate::figure::Figure;
+use crate::harness::sources::{DIAGNOSIS, of};
 use crate::harness::{Context, Population, Row};
 use crate::naming::{CLEAN, WITH_EFFECT, population};
-use crate::topics::{DIAGNOSIS, of};
 
 /// First number of these records among the scenarios; the cells have those below.
 pub(crate) const FIRST_NUMBER: u64 = 100_000_000;

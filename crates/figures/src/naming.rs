@@ -7,8 +7,8 @@ use gyrocal_evaluation::{BaselineMethod, Measure, PopulationCell, RecordScore, m
 
 use crate::error::Error;
 use crate::figure::Figure;
-use crate::harness::{Context, Population, Row, Seeds};
 use crate::harness::sources::{DIAGNOSIS, of};
+use crate::harness::{Context, Population, Row, Seeds};
 
 /// The cells that usual methods are compared on: without an effect, and with one of eight sigmas of its own bound.
 pub(crate) const CLEAN: PopulationCell = PopulationCell::Clean;

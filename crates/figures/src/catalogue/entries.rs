@@ -6,64 +6,25 @@ use gyrocal_diagnosis::prose::explained;
 
 use super::signature;
 
-/// Part of the page: the part of the model that its effects enter.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Chapter {
-    Gyros,
-    Accelerometers,
-    Attitude,
-    Site,
-    Clock,
-    Filter,
-}
+/// Chapters of the page: the parts of the model that effects enter.
+const CHAPTERS: [(&str, fn(&Enters) -> bool); 6] = [
+    ("Gyros", |enters| matches!(enters, Enters::Rates(_))),
+    ("Accelerometers", |enters| {
+        matches!(enters, Enters::Outputs(_))
+    }),
+    ("Attitude", |enters| matches!(enters, Enters::States(_))),
+    ("Site", |enters| matches!(enters, Enters::Inputs(_))),
+    ("Clock", |enters| matches!(enters, Enters::Time)),
+    ("Filter", |enters| matches!(enters, Enters::Filter)),
+];
 
-impl Chapter {
-    const ALL: [Self; 6] = [
-        Self::Gyros,
-        Self::Accelerometers,
-        Self::Attitude,
-        Self::Site,
-        Self::Clock,
-        Self::Filter,
-    ];
-
-    fn of(effect: &Effect) -> Self {
-        match effect.enters {
-            Enters::Rates(_) => Self::Gyros,
-            Enters::Outputs(_) => Self::Accelerometers,
-            Enters::States(_) => Self::Attitude,
-            Enters::Inputs(_) => Self::Site,
-            Enters::Time => Self::Clock,
-            Enters::Filter => Self::Filter,
-        }
-    }
-
-    fn title(self) -> &'static str {
-        match self {
-            Self::Gyros => "Gyros",
-            Self::Accelerometers => "Accelerometers",
-            Self::Attitude => "Attitude",
-            Self::Site => "Site",
-            Self::Clock => "Clock",
-            Self::Filter => "Filter",
-        }
-    }
-}
-
-/// All entries, by the part of the model that they enter.
+/// All entries, by chapter.
 pub(super) fn of(families: &[&Effect]) -> String {
-    let mut chapters = Vec::new();
-    for chapter in Chapter::ALL {
-        let members = families
-            .iter()
-            .filter(|effect| Chapter::of(effect) == chapter);
+    let chapters = CHAPTERS.map(|(title, is_of)| {
+        let members = families.iter().filter(|effect| is_of(&effect.enters));
         let entries: Vec<String> = members.map(|effect| entry(effect)).collect();
-        chapters.push(format!(
-            "## {}\n\n{}",
-            chapter.title(),
-            entries.join("\n\n")
-        ));
-    }
+        format!("## {title}\n\n{}", entries.join("\n\n"))
+    });
     chapters.join("\n\n")
 }
 

@@ -74,88 +74,68 @@ pub(super) fn picture(effect: &Effect) -> Result<Option<Residuals>, Error> {
         return Ok(None);
     }
     let scenario = scenario()?;
-    let mut shown = Shown::of(effect, &scenario, 1.0)?;
+    let mut shown = drawn(effect, &scenario, 1.0)?;
     for power in 1..=LARGEST_POWER {
-        if effect.is_noise() || effect.is_nominal || shown.largest() > scenario.accel_noise_g {
+        if effect.is_noise() || effect.is_nominal || is_visible(&shown) {
             break;
         }
-        shown = Shown::of(effect, &scenario, 10_f64.powi(power))?;
+        shown = drawn(effect, &scenario, 10_f64.powi(power))?;
     }
-    Ok(Some(shown.drawn(effect, &scenario)))
+    Ok(Some(shown))
 }
 
-/// A record with the effect, and what is drawn of it.
-struct Shown {
-    title: String,
-    time_s: Vec<f64>,
-    residual_g: Vec<[f64; 3]>,
+fn is_visible(shown: &Residuals) -> bool {
+    let mut channels = shown.channels.iter();
+    channels.any(|channel| {
+        let least = VISIBLE_SIGMAS * channel.sigma;
+        channel.before.iter().any(|value| value.abs() > least)
+    })
 }
 
-impl Shown {
-    /// The effect at `factor` times its typical size.
-    fn of(effect: &Effect, scenario: &Scenario, factor: f64) -> Result<Self, Error> {
-        let values = values(effect, scenario, factor);
-        let named: Vec<(&str, f64)> = values
-            .iter()
-            .map(|(name, value, _)| (name.as_str(), *value))
-            .collect();
-        let with = Scenario {
-            hidden: vec![Hidden::new(effect.id, &named)?],
-            ..noise_of(effect, scenario)
-        };
-        let simulation = simulate(&with)?;
-        let sizes: Vec<String> = values
-            .iter()
-            .filter(|(_, value, _)| *value != 0.0)
-            .map(|(name, value, unit)| {
-                let value = format::short(*value, 3);
-                let unit = if *unit == "1" { "" } else { unit };
-                format!("{name} {value} {unit}").trim_end().to_owned()
-            })
-            .collect();
-        let residual_g = if effect.is_nominal {
-            let without = simulate(&noise_of(effect, scenario))?;
-            difference(&simulation.record.accel_g, &without.record.accel_g)
-        } else {
-            left_by_the_fit(&simulation, scenario)?
-        };
-        Ok(Self {
-            title: format!("{}: {}", effect.id, sizes.join(", ")),
-            time_s: simulation.record.time_s,
-            residual_g,
-        })
-    }
-
-    /// Largest residual over the number of sigmas at which it is seen, g.
-    fn largest(&self) -> f64 {
-        let all = self.residual_g.iter().flatten();
-        all.fold(0.0_f64, |most, value| most.max(value.abs())) / VISIBLE_SIGMAS
-    }
-
-    fn drawn(self, effect: &Effect, scenario: &Scenario) -> Residuals {
-        let channels = AXES.into_iter().enumerate();
-        let channels = channels.map(|(axis, name)| ResidualChannel {
-            name: name.to_owned(),
-            before: self.residual_g.iter().map(|row| row[axis]).collect(),
-            after: None,
-            sigma: scenario.accel_noise_g,
-        });
-        let label = if effect.is_nominal {
-            "change of the readings"
-        } else {
-            "left by the fit of the nominal model"
-        };
-        Residuals {
-            title: self.title,
-            subtitle: effect.name.to_owned(),
-            channels: channels.collect(),
-            time_s: self.time_s,
-            before_label: label.to_owned(),
-            after_label: String::new(),
-            quantity: "residual".to_owned(),
-            unit: "g".to_owned(),
-        }
-    }
+/// The effect at `factor` times its typical size.
+fn drawn(effect: &Effect, scenario: &Scenario, factor: f64) -> Result<Residuals, Error> {
+    let values = values(effect, scenario, factor);
+    let named: Vec<(&str, f64)> = values
+        .iter()
+        .map(|(name, value, _)| (name.as_str(), *value))
+        .collect();
+    let quiet = noise_of(effect, scenario);
+    let simulation = simulate(&Scenario {
+        hidden: vec![Hidden::new(effect.id, &named)?],
+        ..quiet.clone()
+    })?;
+    let shown = values.iter().filter(|(_, value, _)| *value != 0.0);
+    let sizes = shown.map(|(name, value, unit)| {
+        let value = format::short(*value, 3);
+        let unit = if *unit == "1" { "" } else { unit };
+        format!("{name} {value} {unit}").trim_end().to_owned()
+    });
+    let sizes: Vec<String> = sizes.collect();
+    let (residual_g, label) = if effect.is_nominal {
+        let without = simulate(&quiet)?;
+        let change = difference(&simulation.record.accel_g, &without.record.accel_g);
+        (change, "change of the readings")
+    } else {
+        let left = left_by_the_fit(&simulation, scenario)?;
+        (left, "left by the fit of the nominal model")
+    };
+    let channels = AXES.into_iter().enumerate();
+    let channels = channels.map(|(axis, name)| ResidualChannel {
+        name: name.to_owned(),
+        before: residual_g.iter().map(|row| row[axis]).collect(),
+        after: None,
+        sigma: scenario.accel_noise_g,
+    });
+    Ok(Residuals {
+        title: format!("{}: {}", effect.id, sizes.join(", ")),
+        subtitle: effect.name.to_owned(),
+        channels: channels.collect(),
+        time_s: simulation.record.time_s,
+        before_label: label.to_owned(),
+        after_label: String::new(),
+        quantity: "residual".to_owned(),
+        unit: "g".to_owned(),
+    })
 }
 
 /// The scenario with its noise for effects of the noise of the readings, without it for all others.

@@ -3,8 +3,8 @@
 
 use std::collections::BTreeMap;
 
-use gyrocal::EFFECTS;
 use gyrocal::effect::{EffectKind, Enters, NoiseProperty};
+use gyrocal::{EFFECTS, Effect};
 use gyrocal_diagnosis::result::FindingKind;
 use gyrocal_diagnosis::{
     AuditOptions, DiagnoseOptions, NoiseAudit, Outlier, audit_noise, diagnose,
@@ -15,8 +15,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
 use crate::figure::Figure;
+use crate::harness::sources::{DIAGNOSIS, of};
 use crate::harness::{Context, Population, Row};
-use crate::topics::{DIAGNOSIS, of};
 
 /// Seed of the platforms and their records.
 const PLATFORMS: u64 = 20;
@@ -30,36 +30,13 @@ const CAUSE: [u64; 2] = [100, 8];
 const RIGHT: f64 = 0.95;
 const RIGHT_REASON: &str = "one of twenty may be missed, or have another name or size";
 
-/// A kind of noise: name, fault, and the property of each accelerometer that the audit must find, and no other.
-type Kind = (&'static str, Fault, NoiseProperty);
-
-/// All kinds; the first two are diagnosed as a whole.
-const KINDS: [Kind; 5] = [
-    (
-        "LSB of 3 sigma",
-        Fault::Quantised(3.0),
-        NoiseProperty::Quantisation,
-    ),
-    (
-        "0.5 % outliers of 8 sigma",
-        Fault::Outliers(0.005, 8.0),
-        NoiseProperty::Outliers,
-    ),
-    (
-        "AR(1) of 0.3",
-        Fault::Coloured(0.3),
-        NoiseProperty::Correlation,
-    ),
-    (
-        "sigma 1.2 of declared",
-        Fault::Ratio(1.2),
-        NoiseProperty::Level,
-    ),
-    (
-        "sigma 0.8 of declared",
-        Fault::Ratio(0.8),
-        NoiseProperty::Level,
-    ),
+/// Kinds of noise; the first two are diagnosed as a whole.
+const KINDS: [(&str, Fault); 5] = [
+    ("LSB of 3 sigma", Fault::Quantised(3.0)),
+    ("0.5 % outliers of 8 sigma", Fault::Outliers(0.005, 8.0)),
+    ("AR(1) of 0.3", Fault::Coloured(0.3)),
+    ("sigma 1.2 of declared", Fault::Ratio(1.2)),
+    ("sigma 0.8 of declared", Fault::Ratio(0.8)),
 ];
 
 /// Physical causes far larger than any that must be found; the audit of noise should not react. They are not in the
@@ -117,9 +94,9 @@ pub(super) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
         "0.25 % are promised: of 2000 five are due, and 12 within the bound",
     );
     let mut figures = context.measure(&audits("clean", CLEAN, Fault::None, None), &[alarm])?;
-    for kind in &KINDS {
-        let audits = audits(kind.0, EACH, kind.1, None);
-        figures.extend(context.measure(&audits, &of_kind(kind))?);
+    for (name, fault) in KINDS {
+        let audits = audits(name, EACH, fault, None);
+        figures.extend(context.measure(&audits, &of_kind(name, fault))?);
     }
     for (name, term) in CAUSES {
         let found = Row::words(format!("{name}: audits that find anything"), alarms);
@@ -157,12 +134,12 @@ fn three_days() -> Platforms {
     platforms
 }
 
-fn of_kind((name, fault, property): &Kind) -> Vec<Row<'static, Audited>> {
+fn of_kind(name: &str, fault: Fault) -> Vec<Row<'static, Audited>> {
     let near = match fault {
         Fault::Coloured(_) => "found with its correlation within 0.03",
         _ => "found with its size within 5 %",
     };
-    let expected = accelerometer_noise(*property);
+    let expected = expected(fault);
     let right = move |one: &Audited| Some(one.found == expected);
     let mut rows = vec![
         Row::share(
@@ -219,35 +196,43 @@ fn f1(case: &FaultyRecord, audit: &NoiseAudit) -> f64 {
     }
 }
 
-/// `true` if each finding of a fault has its size within 5 %, a correlation within 0.03.
-fn is_sized(fault: Fault, audit: &NoiseAudit) -> bool {
-    let each = |property: NoiseProperty, parameter: usize, truth: f64, tolerance: f64| {
-        accelerometer_noise(property).iter().all(|effect| {
-            audit.finding(effect).is_some_and(|finding| {
-                (finding.parameters[parameter].estimate - truth).abs() <= tolerance
-            })
-        })
-    };
+/// Sigma of the accelerometers, g.
+const SIGMA_G: f64 = 1e-5;
+
+/// What the audit must find of a fault: property, number of the parameter, its value and its tolerance, which is 5 %
+/// but for a correlation.
+fn truth(fault: Fault) -> Option<(NoiseProperty, usize, f64, f64)> {
+    let within = |property, parameter, value: f64| Some((property, parameter, value, 0.05 * value));
     match fault {
-        Fault::None | Fault::GyroRatio(_) => audit.findings.is_empty(),
-        Fault::Quantised(step) => {
-            let step_g = step * 1e-5;
-            each(NoiseProperty::Quantisation, 0, step_g, 0.05 * step_g)
-        }
-        Fault::Outliers(_, size) => {
-            each(NoiseProperty::Outliers, 1, size * 1e-5, 0.05 * size * 1e-5)
-        }
-        Fault::Coloured(correlation) => each(NoiseProperty::Correlation, 0, correlation, 0.03),
-        Fault::Ratio(ratio) => each(NoiseProperty::Level, 0, ratio, 0.05 * ratio),
+        Fault::None | Fault::GyroRatio(_) => None,
+        Fault::Quantised(step) => within(NoiseProperty::Quantisation, 0, step * SIGMA_G),
+        Fault::Outliers(_, size) => within(NoiseProperty::Outliers, 1, size * SIGMA_G),
+        Fault::Coloured(value) => Some((NoiseProperty::Correlation, 0, value, 0.03)),
+        Fault::Ratio(ratio) => within(NoiseProperty::Level, 0, ratio),
     }
 }
 
-/// Ids of the effects that are a property of the noise of accelerometers, in alphabetical order.
-fn accelerometer_noise(property: NoiseProperty) -> Vec<&'static str> {
+/// `true` if each finding of a fault has the right value.
+fn is_sized(fault: Fault, audit: &NoiseAudit) -> bool {
+    let Some((_, parameter, value, tolerance)) = truth(fault) else {
+        return audit.findings.is_empty();
+    };
+    expected(fault).iter().all(|effect| {
+        let found = audit.finding(effect);
+        found.is_some_and(|found| (found.parameters[parameter].estimate - value).abs() <= tolerance)
+    })
+}
+
+/// Ids of the effects that the audit must find: the property of the noise of each accelerometer, in alphabetical
+/// order.
+fn expected(fault: Fault) -> Vec<&'static str> {
+    let is_it = |effect: &&Effect| {
+        let property = truth(fault).map(|(property, ..)| EffectKind::Noise(property));
+        Some(effect.kind) == property && matches!(effect.enters, Enters::Outputs(_))
+    };
     let mut ids: Vec<&str> = EFFECTS
         .iter()
-        .filter(|effect| effect.kind == EffectKind::Noise(property))
-        .filter(|effect| matches!(effect.enters, Enters::Outputs(_)))
+        .filter(is_it)
         .map(|effect| effect.id)
         .collect();
     ids.sort_unstable();
@@ -272,7 +257,7 @@ fn wholes() -> Population<'static, Whole> {
         small: 6,
         sources: of(DIAGNOSIS, &[file!()]),
         job: Box::new(|number| {
-            let (_, fault, property) = KINDS[(number % 2) as usize];
+            let (_, fault) = KINDS[(number % 2) as usize];
             let case = faulty_record(&three_days(), number, fault, &[]);
             let bench = three_days().scenario(number).bench();
             let found = diagnose(&case.record, &bench, &DiagnoseOptions::default())?.result;
@@ -281,7 +266,7 @@ fn wholes() -> Population<'static, Whole> {
             noise.sort_unstable();
             Ok(Whole {
                 is_physical: found.causes().next().is_some(),
-                is_right: noise == accelerometer_noise(property),
+                is_right: noise == expected(fault),
             })
         }),
     }

@@ -33,7 +33,6 @@ pub(super) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
     let each: Result<Vec<Vec<Compared>>, Error> = (0..scenarios).into_par_iter().map(of).collect();
     let (slopes, all): (Vec<Compared>, Vec<Compared>) =
         each?.into_iter().flatten().partition(|one| one.is_of_slope);
-    let count = all.len() / scenarios as usize;
     let worst = |name: &str, target: f64, of: &[Compared], error: fn(&Compared) -> Option<f64>| {
         let errors = of.iter().filter_map(|one| Some((error(one)?, &*one.name)));
         let errors: Vec<(f64, &str)> = errors.collect();
@@ -49,12 +48,11 @@ pub(super) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
         )
     };
     let own = |one: &Compared| Some(one.error);
-    let name =
-        format!("{count} signatures against the simulation: worst difference over norm, whitened");
+    let name = "signatures against the simulation: worst difference over norm, whitened";
     let left = "the same with the nine coefficients projected out, where a thousandth is left";
     let slope = "signatures of the rate of a logged temperature: the same difference";
     Ok(vec![
-        worst(&name, TARGET, &all, own),
+        worst(name, TARGET, &all, own),
         Figure {
             // Not asked for: what is left of a signature is smaller than the signature.
             target: String::new(),

@@ -1,30 +1,28 @@
 //! A second record of a platform, predicted by the extended model of a first.
 
-use gyrocal::effect::{EffectKind, Enters};
+use gyrocal::effect::Enters;
 use gyrocal_calibration::FittedPlatform;
 use gyrocal_design::NamedCause;
 use gyrocal_diagnosis::{DiagnoseOptions, diagnose, predict_later};
-use gyrocal_evaluation::{InjectedEffect, constant_of_channel, effect_of, inject_any, scenario};
+use gyrocal_evaluation::{effect_of, inject_any, scenario};
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_statistics::{Proportion, median};
-use gyrocal_truth::{Hidden, Scenario, simulate};
+use gyrocal_truth::{Scenario, simulate};
 use serde::{Deserialize, Serialize};
 
-use super::run;
+use super::{continued, run};
 use crate::error::Error;
 use crate::figure::Figure;
 use crate::gain::FIRST_NUMBER;
+use crate::harness::sources::{DIAGNOSIS, of};
 use crate::harness::{Context, Population, Row};
-use crate::topics::{DIAGNOSIS, of};
 
 /// Least strength of the effect, in sigmas of its own bound; the largest is four times that.
 const LEAST_STRENGTH: f64 = 12.0;
 
-const SECONDS_PER_DAY: f64 = 86_400.0;
-
 /// Time from the start of the first record to that of the second: whole days, so that diurnal waves
 /// have the same phase.
-const LATER_S: f64 = 4.0 * SECONDS_PER_DAY;
+const LATER_S: f64 = 4.0 * 86_400.0;
 
 /// Added to the seed of a first record for that of its second.
 const LATER_SEED: u64 = 1 << 40;
@@ -150,7 +148,12 @@ fn second(seed: u64) -> Result<Second, Error> {
     let first = simulate(&scenario)?;
     let options = DiagnoseOptions::default();
     let found = diagnose(&first.record, &first.bench, &options)?;
-    let later = simulate(&later(&scenario, &injected)?)?;
+    let later = simulate(&Scenario {
+        seed: scenario.seed ^ LATER_SEED,
+        start_s: scenario.start_s + LATER_S,
+        hidden: continued(&scenario, LATER_S)?,
+        ..scenario
+    })?;
     let (one, other) = (run(&first), run(&later));
     let predicted = |extended: &FittedPlatform<'_>| {
         let models = [&found.nominal, extended];
@@ -170,33 +173,4 @@ fn second(seed: u64) -> Result<Second, Error> {
         after_a_day_arcmin: of_found.map(|found| found.attitude.at_end_arcmin()),
         told_arcmin: predicted(&told)?.attitude.at_end_arcmin(),
     })
-}
-
-/// The same platform four days later at another attitude, with the injected effect as it continues.
-fn later(first: &Scenario, injected: &InjectedEffect) -> Result<Scenario, Error> {
-    let mut scenario = Scenario {
-        seed: first.seed ^ LATER_SEED,
-        start_s: first.start_s + LATER_S,
-        hidden: Vec::new(),
-        ..first.clone()
-    };
-    let effect = injected.effect;
-    let size = injected.sizes[0];
-    let aged = size * LATER_S / SECONDS_PER_DAY;
-    match (effect.kind, effect.rate()) {
-        (EffectKind::Step, Some(axis)) => scenario.coefficients.bias_deg_per_h[axis] += size,
-        (EffectKind::Ramp, Some(axis)) => {
-            scenario.coefficients.bias_deg_per_h[axis] += aged;
-            scenario.hidden.clone_from(&first.hidden);
-        }
-        (EffectKind::Ramp, None) => {
-            scenario.hidden.clone_from(&first.hidden);
-            let constant = constant_of_channel(effect).ok_or("a ramp of no channel")?;
-            let bias = Hidden::new(constant, &[("size", aged)])?;
-            scenario.hidden.push(bias);
-        }
-        (EffectKind::StateJump | EffectKind::InitialState, _) => {}
-        _ => scenario.hidden.clone_from(&first.hidden),
-    }
-    Ok(scenario)
 }

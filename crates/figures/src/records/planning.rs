@@ -1,21 +1,18 @@
 //! Planned runs, made: predicted against actual sigmas and confidence sets.
 
-use gyrocal::effect::EffectKind;
 use gyrocal_calibration::{NoiseModel, Options, calibrate_runs};
 use gyrocal_design::{NamedCause, PlanOptions, Proposal, compare, plan};
 use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
-use gyrocal_evaluation::{Statistic, constant_of_channel, effect_of, inject_any};
+use gyrocal_evaluation::{Statistic, inject_any};
 use gyrocal_statistics::deviates::Draw;
-use gyrocal_truth::{
-    Hidden, InitialAttitude, Population as Platforms, Scenario, Simulation, simulate,
-};
+use gyrocal_truth::{InitialAttitude, Population as Platforms, Scenario, Simulation, simulate};
 use serde::{Deserialize, Serialize};
 
-use super::run;
+use super::{continued, run};
 use crate::error::Error;
 use crate::figure::Figure;
+use crate::harness::sources::{DIAGNOSIS, of};
 use crate::harness::{Context, Population, Row};
-use crate::topics::{DIAGNOSIS, of};
 
 /// Seed of the platforms and their records.
 const PLATFORMS: u64 = 78;
@@ -31,13 +28,6 @@ const SHORT: f64 = 1.0 / 12.0;
 const WITHIN: [f64; 2] = [0.8, 1.2];
 const WITHIN_REASON: &str = "a plan is chosen by differences that are larger";
 
-/// Result of a planned run that was made.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-struct Sigmas {
-    /// Least and largest of the nine ratios of the sigma of a joint calibration to the predicted one.
-    ratios: [f64; 2],
-}
-
 /// Sizes of one confidence set: of the record, and predicted and actual after a next run.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Sets {
@@ -49,20 +39,17 @@ struct Sets {
 
 /// All figures of the part.
 pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
-    let extreme = |which: &str, of: fn(&[Sigmas]) -> f64| {
+    let extreme = |which: &str, from: f64, of: fn(f64, f64) -> f64| {
         let name = format!("planned run: {which} of the nine sigmas over the predicted, any run");
-        let value = move |all: &[Sigmas]| Statistic::Value(of(all), all.len() as u64);
+        let value = move |all: &[Vec<f64>]| {
+            let extreme = all.iter().flatten().copied().fold(from, of);
+            Statistic::Value(extreme, all.len() as u64)
+        };
         Row::new(name, value).between(WITHIN, WITHIN_REASON)
     };
     let ratios = [
-        extreme("least", |all| {
-            all.iter()
-                .map(|one| one.ratios[0])
-                .fold(f64::INFINITY, f64::min)
-        }),
-        extreme("largest", |all| {
-            all.iter().map(|one| one.ratios[1]).fold(0.0, f64::max)
-        }),
+        extreme("least", f64::INFINITY, f64::min),
+        extreme("largest", 0.0, f64::max),
     ];
     let name = "planned run: mean size of named sets of two or more before it";
     let mut sizes = vec![Row::mean(name, |of: &Sets| of.now)];
@@ -115,58 +102,29 @@ fn scenario(seed: u64) -> Scenario {
 
 /// The next run as planned, with the injected effect as it continues.
 fn made(scenario: &Scenario, planned: &Proposal) -> Result<Simulation, Error> {
-    let mut next = Scenario {
+    Ok(simulate(&Scenario {
         seed: scenario.seed ^ 0x5ec0_4d00,
         initial: InitialAttitude::AnglesDeg(planned.angles_deg.unwrap_or_default()),
         duration_s: planned.duration_s,
-        hidden: Vec::new(),
+        hidden: continued(scenario, scenario.duration_s)?,
         ..scenario.clone()
-    };
-    let days = scenario.duration_s / 86_400.0;
-    for hidden in &scenario.hidden {
-        let size = hidden
-            .parameters()
-            .first()
-            .map_or(0.0, |(_, size, _)| *size);
-        let effect = effect_of(hidden.id()).ok_or("an effect that the catalogue lacks")?;
-        let grown = match effect.kind {
-            EffectKind::InitialState | EffectKind::StateJump => continue,
-            EffectKind::Step => size,
-            EffectKind::Ramp => size * days,
-            _ => 0.0,
-        };
-        if effect.kind != EffectKind::Step {
-            next.hidden.push(hidden.clone());
-        }
-        if grown != 0.0 {
-            let constant = constant_of_channel(effect).ok_or("a change of no channel")?;
-            let bias = Hidden::new(constant, &[("size", grown)])?;
-            next.hidden.push(bias);
-        }
-    }
-    Ok(simulate(&next)?)
+    })?)
 }
 
-fn sigmas(seed: u64) -> Result<Sigmas, Error> {
+/// The nine sigmas of a joint calibration with the planned run over the predicted ones.
+fn sigmas(seed: u64) -> Result<Vec<f64>, Error> {
     let scenario = scenario(seed);
     let first = simulate(&scenario)?;
-    let noise = NoiseModel::default();
-    let fitted = NamedCause::fitted(&[], &run(&first), &noise, &Options::default())?;
+    let (noise, options) = (NoiseModel::default(), Options::default());
+    let fitted = NamedCause::fitted(&[], &run(&first), &noise, &options)?;
     let planned = plan(&fitted, &run(&first), &[], &PlanOptions::default())?;
     let best = planned.proposals.first().ok_or("no proposal")?;
     let second = made(&scenario, best)?;
-    let joint = calibrate_runs(&[run(&first), run(&second)], &Options::default(), |_| ())?;
-    let predicted = best.outlook.coefficients.iter();
-    let ratios: Vec<f64> = predicted
-        .zip(joint.coefficients())
+    let joint = calibrate_runs(&[run(&first), run(&second)], &options, |_| ())?;
+    let both = best.outlook.coefficients.iter().zip(joint.coefficients());
+    Ok(both
         .map(|(predicted, found)| found.sigma / predicted.sigma)
-        .collect();
-    Ok(Sigmas {
-        ratios: [
-            ratios.iter().copied().fold(f64::INFINITY, f64::min),
-            ratios.iter().copied().fold(0.0, f64::max),
-        ],
-    })
+        .collect())
 }
 
 fn sets(seed: u64) -> Result<Sets, Error> {
@@ -188,26 +146,15 @@ fn sets(seed: u64) -> Result<Sets, Error> {
             ..PlanOptions::default()
         };
         let planned = plan(fitted, &run(&first), &named, &options)?;
-        let of_first = |sizes: Vec<f64>| sizes.first().copied();
-        let now = planned.now.sets.iter().map(|set| set.mean_size);
-        sets.now = of_first(now.collect()).filter(|size| *size > 1.0);
+        let now = planned.now.sets.first().map(|set| set.mean_size);
+        sets.now = now.filter(|size| *size > 1.0);
         let best = planned.proposals.first().ok_or("no proposal")?;
-        let predicted = best.outlook.sets.iter().map(|set| set.mean_size);
-        let second = made(&scenario, best)?;
-        let compared = compare(
-            fitted,
-            &run(&first),
-            &run(&second),
-            None,
-            &named,
-            &Options::default(),
-        )?;
-        let left = compared.sets.iter().map(|set| {
-            let stay = set.iter().filter(|member| member.stays);
-            stay.count() as f64
-        });
-        let predicted = of_first(predicted.collect()).ok_or("no set")?;
-        *after = [predicted, of_first(left.collect()).ok_or("no set")?];
+        let predicted = best.outlook.sets.first().ok_or("no set")?.mean_size;
+        let (one, second, calibration) = (run(&first), made(&scenario, best)?, Options::default());
+        let compared = compare(fitted, &one, &run(&second), None, &named, &calibration)?;
+        let left = compared.sets.first().ok_or("no set")?;
+        let left = left.iter().filter(|member| member.stays).count();
+        *after = [predicted, left as f64];
     }
     Ok(sets)
 }

@@ -15,8 +15,8 @@ use serde::{Deserialize, Serialize};
 use super::{oracle, run};
 use crate::error::Error;
 use crate::figure::Figure;
+use crate::harness::sources::{DIAGNOSIS, of};
 use crate::harness::{Context, Population, Row};
-use crate::topics::{DIAGNOSIS, of};
 
 /// File of the oracle.
 const ORACLE: &str = "crates/figures/src/records/oracle.rs";
@@ -36,8 +36,6 @@ struct Hidden {
     /// Least share of sets that hold the cause, and why.
     found: f64,
     reason: &'static str,
-    /// Largest mean size of the set over an oracle's.
-    over_oracle: Option<f64>,
 }
 
 const HIDDEN: [Hidden; 2] = [
@@ -48,8 +46,7 @@ const HIDDEN: [Hidden; 2] = [
         records: 2,
         strength: 8.0,
         found: 0.99,
-        reason: "eleven sigmas together; sets of 95 % are cut by the likeliest names",
-        over_oracle: Some(1.1),
+        reason: "eleven sigmas together, of which sets of one record hold 0.99",
     },
     Hidden {
         name: "four records, a term with d = 4 in each",
@@ -59,7 +56,6 @@ const HIDDEN: [Hidden; 2] = [
         strength: 4.0,
         found: 0.95,
         reason: "sets of 95 %",
-        over_oracle: None,
     },
 ];
 
@@ -133,17 +129,13 @@ fn rows(cell: &Hidden) -> Vec<Row<'_, Named>> {
         })
     };
     let what = "mean size of the set over an oracle's, members without onset or time constant";
-    let constant = over_oracle(what, false);
     let number = |what: &str, of: fn(&Named) -> Option<usize>| {
         Row::mean(name(what), move |one| Some(of(one)? as f64))
     };
     vec![
         Row::share(name("found"), |one: &Named| Some(one.together))
             .at_least(cell.found, cell.reason),
-        match cell.over_oracle {
-            Some(most) => constant.at_most(most, "a tenth for levels of noise that are estimated"),
-            None => constant,
-        },
+        over_oracle(what, false).at_most(1.1, "a tenth for levels of noise that are estimated"),
         over_oracle("the same of causes in time or temperature", true),
         number(
             "mean number of members with onset or time constant beside these",
@@ -188,32 +180,27 @@ fn hidden(seed: u64, records: u64, strength: f64) -> Result<Named, Error> {
         .into_iter()
         .filter(is_term)
         .collect();
-    let (effect, sizes, own) = loop {
+    let (mut injected, own) = loop {
         let effect = *draw.one_of(&effects);
-        let sizes: Vec<f64> = effect
-            .sizes()
-            .map(|_| UNIT * effect.typical_size * draw.normal())
-            .collect();
+        let sizes = effect.sizes();
+        let sizes = sizes.map(|_| UNIT * effect.typical_size * draw.normal());
         let of_unit = InjectedEffect {
             effect,
-            sizes: sizes.clone(),
+            sizes: sizes.collect(),
             shape: None,
         };
-        let strengths: Vec<f64> = scenarios
-            .iter()
-            .map(|scenario| of_unit.strength(scenario))
-            .collect::<Result<_, _>>()?;
+        let strengths = scenarios.iter().map(|scenario| of_unit.strength(scenario));
+        let strengths: Vec<f64> = strengths.collect::<Result<_, _>>()?;
         // Every record has to show it.
         if strengths.iter().all(|own| *own > LEAST) {
             let squares: f64 = strengths.iter().map(|own| own * own).sum();
-            break (effect, sizes, (squares / records as f64).sqrt());
+            break (of_unit, (squares / records as f64).sqrt());
         }
     };
-    let injected = InjectedEffect {
-        effect,
-        sizes: sizes.iter().map(|size| size * strength / own).collect(),
-        shape: None,
-    };
+    for size in &mut injected.sizes {
+        *size = *size * strength / own;
+    }
+    let effect = injected.effect;
     for scenario in &mut scenarios {
         scenario.hidden = vec![injected.to_hidden()?];
     }
