@@ -54,6 +54,11 @@ fn whole() -> &'static (String, Folder) {
     })
 }
 
+/// The result of that run for programs.
+pub(crate) fn hidden_fault() -> String {
+    whole().1.text("o.json")
+}
+
 #[test]
 fn the_hidden_fault_is_named_with_its_size() {
     let (said, folder) = whole();
@@ -284,13 +289,6 @@ fn a_clean_record_is_called_clean() {
         value["manifest"]["inputs"][1]["path"],
         "three_days.bench.toml"
     );
-}
-
-#[test]
-fn the_exit_code_speaks_if_asked_to() {
-    let folder = folder();
-    let arguments = ["diagnose", RECORD, "--bench", BENCH, "--exit-code"];
-    assert_eq!(folder.run(&arguments).status.code(), Some(3));
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use gyrocal_design::{Aim, AttitudeOf, PlanResult};
 
+use crate::diagnose::hidden_fault;
 use crate::folder::{Folder, repository_argument};
 
 const RECORD: &str = "hidden_fault.csv";
@@ -18,7 +19,7 @@ fn folder() -> Folder {
 #[test]
 fn a_run_is_planned_from_a_diagnosis() {
     let folder = folder();
-    folder.succeed(&["diagnose", RECORD, "--bench", BENCH, "--json", "d.json"]);
+    folder.put("d.json", hidden_fault());
     let arguments = [
         "plan",
         RECORD,

@@ -4,6 +4,7 @@
 use std::process::Output;
 use std::time::{Duration, Instant};
 
+use crate::diagnose::hidden_fault;
 use crate::folder::{Folder, example, repository_argument};
 
 /// Characters that set colours and titles, ring, end a text, and reorder letters.
@@ -129,14 +130,10 @@ fn names_in_results_are_escaped() {
     let folder = folder();
     folder.put("h.csv", example("hidden_fault.csv"));
     folder.put("h.toml", example("hidden_fault.bench.toml"));
-    folder.succeed(&["diagnose", "h.csv", "--bench", "h.toml", "--json", "d.json"]);
     let name = "\\u001b]0;title\\u0007\\u202e";
-    let forged = folder.text("d.json").replace("gyro_y.g_z", name);
-    folder.put("forged.json", forged);
-    folder.put(
-        "raw.json",
-        folder.text("d.json").replace("gyro_y.g_z", EVIL),
-    );
+    let diagnosis = hidden_fault();
+    folder.put("forged.json", diagnosis.replace("gyro_y.g_z", name));
+    folder.put("raw.json", diagnosis.replace("gyro_y.g_z", EVIL));
     folder.put("none.json", format!("{{\"{name}\": 1}}"));
     for diagnosis in ["forged.json", "raw.json", "none.json"] {
         let extend = folder.run(&["extend", diagnosis, "--out", "x.model.toml"]);

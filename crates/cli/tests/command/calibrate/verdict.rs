@@ -4,6 +4,7 @@ use gyrocal_diagnosis::DiagnosisResult;
 use gyrocal_record::{CalibrationReport, FitVerdict};
 
 use super::{JSON, folder, report, unwrapped};
+use crate::diagnose;
 use crate::folder::{Folder, example};
 
 /// A folder with the record with a hidden fault and its bench description.
@@ -27,8 +28,7 @@ fn a_fault_that_the_diagnosis_finds_is_told_with_its_probability() {
     assert!(said.contains(next), "{said}");
     let found = report(&folder);
     assert_eq!(found.verdict, FitVerdict::EffectsFound);
-    folder.succeed(&["diagnose", "r.csv", "--bench", "b.toml", "--json", "d.json"]);
-    let diagnosis: DiagnosisResult = serde_json::from_str(&folder.text("d.json")).unwrap();
+    let diagnosis: DiagnosisResult = serde_json::from_str(&diagnose::hidden_fault()).unwrap();
     let [test] = &found.effects[..] else {
         panic!("{:?}", found.effects)
     };
