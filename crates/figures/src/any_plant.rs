@@ -43,19 +43,21 @@ pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
     figures.push(gauges::figure(&plants)?);
     figures.extend(starts(context, &plants)?);
     figures.push(effort::lines()?);
-    figures.push(effort::duration()?);
+    figures.push(effort::duration()?.timed(context.is_small()));
     figures.push(effort::interpreted(&plants[Kind::Duffing as usize])?);
     Ok(figures)
 }
 
 /// The plants, in the order of [`Kind::ALL`].
 pub(crate) fn plants() -> Result<Vec<LoadedPlant>, PlantError> {
+    Kind::ALL.into_iter().map(loaded).collect()
+}
+
+/// An example plant.
+pub(crate) fn loaded(kind: Kind) -> Result<LoadedPlant, PlantError> {
     let examples = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples");
-    let read = |kind: Kind| {
-        let file = format!("{examples}/{}/plant.json", kind.facts().name);
-        LoadedPlant::read(std::path::Path::new(&file))
-    };
-    Kind::ALL.into_iter().map(read).collect()
+    let file = format!("{examples}/{}/plant.json", kind.facts().name);
+    LoadedPlant::read(std::path::Path::new(&file))
 }
 
 /// A population of records of some plants in turn: `first`, `full` and `small` are of each of them.

@@ -3,12 +3,9 @@
 //! A stamp, `.ci/stamps/NAME`, is the hash of the sources of a section when it passed last. `.ci/run` runs a section
 //! if its stamp is of other sources, and the section writes its stamp itself.
 
-use std::path::PathBuf;
-
-use gyrocal_testkit::workspace;
-
 use crate::error::Error;
 use crate::harness::sources::Sources;
+use crate::harness::stamp::Stamp;
 
 /// A slow section.
 struct SlowSection {
@@ -97,13 +94,8 @@ const fn section(
 }
 
 impl SlowSection {
-    fn stamp(&self) -> PathBuf {
-        workspace().join(".ci/stamps").join(self.name)
-    }
-
-    fn is_stale(&self) -> Result<bool, Error> {
-        let stamp = std::fs::read_to_string(self.stamp()).unwrap_or_default();
-        Ok(stamp.trim() != self.sources.hash()?)
+    fn stamp(&self) -> Result<Stamp, Error> {
+        Stamp::new(self.name, &[&self.sources])
     }
 }
 
@@ -129,15 +121,10 @@ impl Section {
             let mut sections = SECTIONS.iter();
             let section = sections.find(|section| section.name == name);
             let section = section.ok_or_else(|| format!("no slow section is called `{name}`"))?;
-            let line = format!("{}\n", section.sources.hash()?);
-            std::fs::create_dir_all(workspace().join(".ci/stamps"))?;
-            return Ok(gyrocal_record::write_whole(
-                &section.stamp(),
-                line.as_bytes(),
-            )?);
+            return section.stamp()?.write();
         }
         for section in &SECTIONS {
-            if self.all || section.is_stale()? {
+            if self.all || section.stamp()?.is_stale() {
                 println!("{}", section.name);
             }
         }
@@ -148,6 +135,8 @@ impl Section {
 #[cfg(test)]
 mod tests {
     use std::path::Path;
+
+    use gyrocal_testkit::workspace;
 
     use super::*;
 

@@ -17,6 +17,7 @@ pub(crate) mod pages;
 mod population;
 mod row;
 pub(crate) mod sources;
+pub(crate) mod stamp;
 pub(crate) mod topic;
 
 pub(crate) use context::{Context, Seeds, Size};

@@ -8,7 +8,6 @@ mod unit;
 mod vertical;
 
 use gyrocal_instruments::{Description, InstrumentError};
-use gyrocal_statistics::Proportion;
 
 use crate::error::Error;
 use crate::figure::Figure;
@@ -57,19 +56,3 @@ fn described(rate_hz: f64, latitude_deg: f64, more: &str) -> Result<Description,
 const OVER_PROJECTION: f64 = 1.05;
 const OVER_PROJECTION_REASON: &str =
     "no worse than the simpler way, but for what the noise of a log costs to estimate";
-
-/// Share that is to be at least a target.
-fn at_least(
-    name: &str,
-    target: f64,
-    hits: impl IntoIterator<Item = bool>,
-    seeds: &str,
-    small: bool,
-) -> Figure {
-    let share = Proportion::of(hits);
-    let mut figure = Figure::within(name, [target, f64::INFINITY], share.share()).of_share(share);
-    if small {
-        figure = figure.judged(share.at_least(target));
-    }
-    figure.over(share.trials as usize, seeds)
-}

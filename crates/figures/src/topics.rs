@@ -21,6 +21,7 @@ pub(crate) const TOPICS: [Topic; 8] = [
         about: "The filter's kernel and generated code: speed, scaling, rounding, instructions, other generators.",
         parts: &[
             Part {
+                small: false,
                 introduction: |_| kernel::INTRODUCTION.to_owned(),
                 ..part(
                     "filter",
@@ -37,6 +38,7 @@ pub(crate) const TOPICS: [Topic; 8] = [
                 )
             },
             Part {
+                small: false,
                 introduction: |_| generator::INTRODUCTION.to_owned(),
                 ..part(
                     "generator",

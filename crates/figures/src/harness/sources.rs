@@ -39,6 +39,16 @@ pub(crate) const PLANTS: &[&str] = &[
 ];
 pub(crate) const COMMAND: &[&str] = &["crates/cli"];
 
+/// What judges the small version of every part: this harness and the pages.
+pub(crate) const JUDGING: Sources = of(
+    &[],
+    &[
+        "crates/figures/src/figure.rs",
+        "crates/figures/src/harness",
+        "docs/figures",
+    ],
+);
+
 /// What a result depends on, from the root of the workspace.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sources {
@@ -143,14 +153,12 @@ fn closure(root: &Path, named: &[&str]) -> Result<BTreeMap<PathBuf, bool>, Error
         .get("workspace")
         .and_then(|all| all.get("dependencies"));
     let mut found: BTreeMap<PathBuf, bool> = BTreeMap::new();
-    let mut waiting: Vec<(PathBuf, bool)> = named
-        .iter()
-        .map(|folder| (PathBuf::from(folder), true))
-        .collect();
-    while let Some((folder, is_named)) = waiting.pop() {
+    let mut waiting: Vec<PathBuf> = named.iter().map(PathBuf::from).collect();
+    while let Some(folder) = waiting.pop() {
         if found.contains_key(&folder) {
             continue;
         }
+        let is_named = named.iter().any(|one| folder == Path::new(one));
         let manifest = manifest(root, &folder)?;
         let kinds: &[&str] = match is_named {
             true => &["dependencies", "build-dependencies", "dev-dependencies"],
@@ -169,7 +177,7 @@ fn closure(root: &Path, named: &[&str]) -> Result<BTreeMap<PathBuf, bool>, Error
                     .map(PathBuf::from),
                 (None, None) => None,
             };
-            waiting.extend(path.map(|path| (plain(&path), false)));
+            waiting.extend(path.map(|path| plain(&path)));
         }
         found.insert(folder, is_named);
     }

@@ -21,7 +21,7 @@ pub(crate) struct Part {
     pub(crate) name: &'static str,
     /// What it measures, in one line.
     pub(crate) about: &'static str,
-    /// Whether the small version has it.
+    /// Whether the gate has its small version; of others a slow section has it, or nothing.
     pub(crate) small: bool,
     /// What can move its figures, beside this program.
     pub(crate) sources: Sources,
