@@ -113,6 +113,14 @@ impl Statistic {
         Self::Share(Proportion::of(records.iter().filter_map(of)))
     }
 
+    /// Share of all items of all records that are true. Items of one record depend on each other: the share counts
+    /// as that of so many independent ones as scatter over records like these.
+    pub fn each<R, I: IntoIterator<Item = bool>>(records: &[R], of: impl Fn(&R) -> I) -> Self {
+        let all = records.iter().map(|record| Proportion::of(of(record)));
+        let all: Vec<Proportion> = all.filter(|share| share.trials > 0).collect();
+        Self::Share(independent(&all))
+    }
+
     /// The measured value; NaN without records.
     #[must_use]
     pub fn value(&self) -> f64 {
@@ -270,6 +278,28 @@ fn of_median(values: &[f64]) -> Range {
         let half_width = 0.5 * sigmas / count.sqrt();
         [0.5 - half_width, 0.5 + half_width].map(|share| quantile(values, share.clamp(0.0, 1.0)))
     })
+}
+
+/// The number of independent items that are as certain as those of these records, at least one a record, and those of
+/// them that are true.
+fn independent(records: &[Proportion]) -> Proportion {
+    let sum = |of: &dyn Fn(&Proportion) -> f64| -> f64 { records.iter().map(of).sum() };
+    let trials = sum(&|record| record.trials as f64);
+    let share = sum(&|record| record.hits as f64) / trials;
+    let count = records.len() as f64;
+    let scatter = sum(&|record| {
+        let excess = record.hits as f64 - share * record.trials as f64;
+        excess * excess
+    });
+    // Of records whose items agree with each other.
+    let most = trials / count;
+    let effect = scatter / (trials * share * (1.0 - share)) * count / (count - 1.0);
+    let effect = if effect.is_finite() { effect } else { most };
+    let trials = (trials / effect.clamp(1.0, most.max(1.0))).round();
+    Proportion {
+        hits: (share * trials).round() as u64,
+        trials: trials as u64,
+    }
 }
 
 fn least(all: &[Proportion]) -> Option<&Proportion> {

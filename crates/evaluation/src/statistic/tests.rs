@@ -175,3 +175,36 @@ fn medians_and_means_have_their_scatter() {
     assert_eq!(holds(&mean, Target::AtMost(45.0), true), Some(false));
     assert_eq!(holds(&mean, Target::AtMost(60.0), false), Some(true));
 }
+
+#[test]
+fn items_that_depend_on_each_other_count_as_fewer() {
+    let share = |records: &[[bool; 4]]| {
+        Statistic::each(records, |items| *items)
+            .proportion()
+            .unwrap()
+    };
+    // Items of a record that agree are one; items that scatter like independent ones are themselves.
+    let agreeing = [[true; 4], [true; 4], [false; 4], [true; 4]].repeat(5);
+    assert_eq!(
+        share(&agreeing),
+        Proportion {
+            hits: 15,
+            trials: 20
+        }
+    );
+    let scattered = [
+        [true, true, true, false],
+        [false, true, true, true],
+        [true, true, false, true],
+        [true, false, true, true],
+    ];
+    assert_eq!(
+        share(&scattered.repeat(5)),
+        Proportion {
+            hits: 60,
+            trials: 80
+        }
+    );
+    assert_eq!(share(&[[true; 4]; 7]), Proportion { hits: 7, trials: 7 });
+    assert_eq!(share(&[]).trials, 0);
+}

@@ -46,9 +46,7 @@ impl<'a, R> Row<'a, R> {
         name: impl Into<String>,
         of: impl Fn(&R) -> I + 'a,
     ) -> Self {
-        Self::new(name, move |records| {
-            Statistic::Share(Proportion::of(records.iter().flat_map(&of)))
-        })
+        Self::new(name, move |records| Statistic::each(records, &of))
     }
 
     /// The upper 95 % bound of a share.
