@@ -1,6 +1,6 @@
 //! Trials of the calibration: a simulated record, calibrated and compared with its truth.
 
-use gyrocal_calibration::{Calibration, Consistency, Options, Run, calibrate, cramer_rao_bound};
+use gyrocal_calibration::{Consistency, Options, Run, calibrate, cramer_rao_bound};
 use gyrocal_truth::{Scenario, Simulation, simulate};
 use nalgebra::{SMatrix, SVector};
 use serde::{Deserialize, Serialize};
@@ -43,15 +43,18 @@ impl CalibrationTrial {
     /// [`EvaluationError::NotPositiveDefinite`] if the reported covariance has no inverse.
     pub fn of(scenario: &Scenario, options: &Options) -> Result<Self, EvaluationError> {
         let simulation = simulate(scenario)?;
-        let calibration = calibrate(&simulation.record, &simulation.bench, options, |_| ())?;
-        Self::compare(&simulation, &calibration, bound_sigma(&simulation)?)
+        Self::of_simulation(&simulation, options)?.with_bound(&simulation)
     }
 
-    fn compare(
+    /// Calibrates a simulated record and compares estimate and truth, without the Cramér–Rao bound.
+    ///
+    /// # Errors
+    /// [`EvaluationError::Calibration`] and [`EvaluationError::NotPositiveDefinite`], as [`Self::of`].
+    pub fn of_simulation(
         simulation: &Simulation,
-        calibration: &Calibration,
-        bound_sigma: Option<[f64; 9]>,
+        options: &Options,
     ) -> Result<Self, EvaluationError> {
+        let calibration = calibrate(&simulation.record, &simulation.bench, options, |_| ())?;
         let named = simulation.truth.coefficients.named();
         let truth = named.map(|(_, value, _)| value);
         let coefficients = calibration.coefficients();
@@ -67,7 +70,7 @@ impl CalibrationTrial {
             error,
             sigma: coefficients.map(|coefficient| coefficient.sigma),
             determined,
-            bound_sigma,
+            bound_sigma: None,
             nees: nees([true; 9])?,
             nees_determined: nees(determined)?,
             nis_sum: fit.nis_sum(),
@@ -76,27 +79,28 @@ impl CalibrationTrial {
             consistent: fit.consistency() == Consistency::Consistent,
         })
     }
-}
 
-/// Standard deviations of the Cramér–Rao bound of a record; `None` if effects are hidden in it: the
-/// model, and so the bound, does not contain them.
-fn bound_sigma(simulation: &Simulation) -> Result<Option<[f64; 9]>, EvaluationError> {
-    let truth = &simulation.truth;
-    if !truth.hidden.is_empty() {
-        return Ok(None);
+    /// The same with the Cramér–Rao bound of its record; without it if effects are hidden in it: the model, and so
+    /// the bound, does not contain them.
+    ///
+    /// # Errors
+    /// [`EvaluationError::Calibration`] if the bound cannot be computed.
+    pub fn with_bound(self, simulation: &Simulation) -> Result<Self, EvaluationError> {
+        if !simulation.truth.hidden.is_empty() {
+            return Ok(self);
+        }
+        let attitudes = simulation.truth.platform_c_enu.iter();
+        let platform_c_enu: Vec<_> = attitudes.map(|attitude| attitude.matrix()).collect();
+        let run = Run {
+            record: &simulation.record,
+            bench: &simulation.bench,
+        };
+        let covariance = cramer_rao_bound(&run, &platform_c_enu, &self.truth)?;
+        Ok(Self {
+            bound_sigma: Some(core::array::from_fn(|i| covariance[i][i].sqrt())),
+            ..self
+        })
     }
-    let platform_c_enu: Vec<_> = truth
-        .platform_c_enu
-        .iter()
-        .map(|attitude| attitude.matrix())
-        .collect();
-    let drift = truth.coefficients.named().map(|(_, value, _)| value);
-    let run = Run {
-        record: &simulation.record,
-        bench: &simulation.bench,
-    };
-    let covariance = cramer_rao_bound(&run, &platform_c_enu, &drift)?;
-    Ok(Some(core::array::from_fn(|i| covariance[i][i].sqrt())))
 }
 
 /// eᵀ P⁻¹ e of the errors selected by `of`, with their block of the covariance.

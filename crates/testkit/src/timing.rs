@@ -54,15 +54,6 @@ pub fn medians<const N: usize, E>(
     Ok((absolute, relative))
 }
 
-/// `true` if this build may use the instructions of x86-64-v3.
-pub const fn is_x86_64_v3() -> bool {
-    cfg!(all(
-        target_feature = "avx2",
-        target_feature = "fma",
-        target_feature = "bmi2"
-    ))
-}
-
 /// Model name of the processor, where the system tells it.
 pub fn processor() -> String {
     let description = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
