@@ -1,30 +1,120 @@
-//! The batch calibration: consistency over a population, exactness, and cost.
+//! The estimators of the coefficients over random records: consistency, exactness, cost.
 
 mod attitudes;
+pub(crate) mod budget;
 mod cost;
-mod exactness;
-mod paper;
-mod population;
-mod site;
+
+use gyrocal_calibration::Options;
+use gyrocal_evaluation::CalibrationTrial;
+use gyrocal_statistics::{NORMAL_97_5, Proportion};
+use gyrocal_truth::{Coefficients, simulate};
+use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
 use crate::figure::Figure;
+use crate::harness::sources::{CALIBRATION, of};
+use crate::harness::{COVERAGE, COVERAGE_REASON, Context, Population, Row};
 
-/// All figures of the topic.
-pub(crate) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
-    // Memory first, while nothing else has been asked of the allocator.
-    let mut figures = cost::figures(small)?;
-    figures.extend(population::figures(small)?);
-    figures.extend(paper::figures(small)?);
-    figures.extend(site::figures()?);
-    figures.extend(exactness::figures()?);
-    figures.extend(attitudes::figures()?);
+/// Seed of the population of scenarios; its numbers are the seeds of the records.
+const SEED: u64 = 20_150_904;
+
+/// A record, calibrated as a whole and by the streaming filter.
+#[derive(Serialize, Deserialize)]
+struct Both {
+    batch: CalibrationTrial,
+    streaming: CalibrationTrial,
+}
+
+/// All figures of the part.
+pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
+    // Memory first, while nothing else has been asked of the allocator. Times of a small version say little.
+    let mut figures = match context.is_small() {
+        true => Vec::new(),
+        false => cost::figures()?,
+    };
+    figures.extend(context.measure(&population(), &rows())?);
+    figures.extend(attitudes::figures(context)?);
     Ok(figures)
 }
 
-/// Names of the coefficients.
-fn names() -> [&'static str; 9] {
-    gyrocal_truth::Coefficients::NONE
-        .named()
-        .map(|(name, _, _)| name)
+/// Names of the coefficients, with their index.
+fn names() -> impl Iterator<Item = (usize, &'static str)> {
+    let named = Coefficients::NONE.named().into_iter();
+    named.map(|(name, _, _)| name).enumerate()
+}
+
+/// Any attitude, both hemispheres, one to fourteen days.
+fn population() -> Population<'static, Both> {
+    let drawn = gyrocal_truth::Population::new(SEED);
+    let sources = of(CALIBRATION, &[file!()]);
+    Population::new("estimators", [0, 2000, 30], sources, move |number| {
+        let simulation = simulate(&drawn.scenario(number))?;
+        let of = |options| CalibrationTrial::of_simulation(&simulation, &options);
+        Ok(Both {
+            batch: of(Options::default())?.with_bound(&simulation)?,
+            streaming: of(Options::streaming())?,
+        })
+    })
+}
+
+fn rows() -> Vec<Row<'static, Both>> {
+    let nine = "nine degrees of freedom, and a hundredth for what linearisation leaves";
+    let all = |one: &Both| Some(one.batch.nees);
+    let determined = |one: &Both| Some(one.batch.nees_determined);
+    let nis = |one: &Both| Some(1e3 * (one.batch.nis_sum / one.batch.values as f64 - 1.0));
+    let streaming = |one: &Both| Some(one.streaming.nees);
+    let near = |one: &Both| {
+        let of = one.streaming.error.iter().zip(one.streaming.sigma);
+        Some(Proportion::of(of.map(|(error, sigma)| error.abs() <= 3.5 * sigma)).share())
+    };
+    let mut rows = vec![
+        Row::mean("mean NEES of the nine coefficients", all).between([8.9, 9.1], nine),
+        Row::mean("mean NEES of the determined coefficients", determined).between([8.9, 9.1], nine),
+        Row::mean(
+            "NIS over the number of values, less one, in thousandths",
+            nis,
+        )
+        .between(
+            [-1.0, 1.0],
+            "none; truths nearer than their priors take nine of some ten thousand",
+        ),
+        Row::mean(
+            "random scenarios, streaming filter: mean NEES (9 expected)",
+            streaming,
+        )
+        .at_most(
+            12.0,
+            "one pass of a filter: a third more than a consistent estimator",
+        ),
+        Row::mean(
+            "random scenarios, streaming filter: share of coefficients within 3.5 sigmas",
+            near,
+        )
+        .at_least(
+            0.995,
+            "0.9995 of a normal distribution; ten times as many may be beyond",
+        ),
+    ];
+    for (index, name) in names() {
+        let over_bound = move |one: &Both| {
+            let over = one.batch.error[index] / one.batch.bound_sigma?[index];
+            one.batch.determined[index].then_some([over, 1.0])
+        };
+        let held = move |one: &Both| {
+            let held = one.batch.error[index].abs() <= NORMAL_97_5 * one.batch.sigma[index];
+            one.batch.determined[index].then_some(held)
+        };
+        rows.push(
+            Row::rms_ratio(format!("{name}: RMSE / Cramér–Rao bound"), over_bound)
+                .between([0.93, 1.07], "as good as any estimator can be"),
+        );
+        rows.push(
+            Row::share(
+                format!("{name}: share of 95 % intervals that hold the truth"),
+                held,
+            )
+            .between(COVERAGE, COVERAGE_REASON),
+        );
+    }
+    rows
 }

@@ -67,6 +67,7 @@ const SECTIONS: [SlowSection; 10] = [
         &["", "codegen/emit", "crates/testkit"],
         &[
             "benches",
+            "crates/figures/examples",
             "crates/figures/src/kernel",
             "crates/figures/src/generator",
         ],

@@ -1,47 +1,61 @@
-//! The structured kernel: cost of a step relative to the textbook filter and by number of states,
-//! rounding errors, and instruction counts.
+//! The structured kernel: rounding errors, instructions of a step, and its time beside other filters and by number
+//! of states.
 
-mod accuracy;
-mod against_crates;
 pub(crate) mod instructions;
-mod scaling;
-pub(crate) mod speed;
+pub(crate) mod times;
 
 use gyrocal::Integration;
-use gyrocal_testkit::timing;
+use gyrocal::estimation::{Covariance, Factors};
+use gyrocal_testkit::rounding_errors::{FACTORS_LIMIT, TIE, dense_joseph, structured};
 
 use crate::error::Error;
 use crate::figure::Figure;
+use crate::harness::Context;
 
 const RULES: [(&str, Integration); 2] = [("euler", Integration::EULER), ("rk4", Integration::RK4)];
 
 /// Why ratios of builds for wide vectors are below their targets.
 pub(crate) const INTRODUCTION: &str = include_str!("kernel/introduction.md");
 
-/// All figures of the part. With `write`, the committed instruction counts are renewed.
-pub(crate) fn figures(small: bool, write: bool) -> Result<Vec<Figure>, Error> {
-    if write {
-        return instructions::renewed();
+/// All figures of the part: of times only at full size, as those of a machine that does other work say little. With
+/// leave to write, the committed instruction counts are renewed and nothing else is measured.
+pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
+    let mut figures = instructions::figures(context.write)?;
+    if context.write {
+        return Ok(figures);
     }
-    let rounds = if small { 101 } else { 501 };
-    let mut figures = vec![Figure::note(
-        "target features of this build",
-        timing::target_features(),
-    )];
-    let mut timed = speed::figures(rounds)?;
-    if !small {
-        timed.extend(speed::of_other_builds(rounds)?);
+    figures.extend(rounding_errors());
+    if !context.is_small() {
+        figures.extend(times::figures()?);
     }
-    timed.extend(against_crates::figures(rounds)?);
-    timed.extend(scaling::figures(rounds)?);
-    if small {
-        // Ratios of times on a machine that does other work as well say little: shown, not judged.
-        for figure in &mut timed {
-            figure.holds = None;
+    Ok(figures)
+}
+
+/// Rounding errors of the kernel and of the dense Joseph form, against 400-bit arithmetic.
+fn rounding_errors() -> Vec<Figure> {
+    let mut figures = Vec::new();
+    for (rule, integration) in RULES {
+        let name = |what: &str| format!("{rule}, 1000 steps: {what}");
+        let dense = dense_joseph(integration);
+        let what = name("rounding errors of dense Joseph");
+        figures.push(Figure::note(&what, dense.to_string()));
+        for (form, ours, limit) in [
+            ("covariance", structured::<Covariance>(integration), TIE),
+            ("factors", structured::<Factors>(integration), FACTORS_LIMIT),
+        ] {
+            let what = name(&format!("rounding errors of the {form}"));
+            figures.push(Figure::note(&what, ours.to_string()));
+            for (quantity, ratio) in [
+                ("states", ours.state / dense.state),
+                ("sigmas", ours.sigma / dense.sigma),
+            ] {
+                let what = name(&format!("error of {quantity}, {form} / dense Joseph"));
+                figures.push(Figure::within(&what, [f64::NEG_INFINITY, limit], ratio));
+            }
         }
     }
-    figures.extend(timed);
-    figures.extend(accuracy::figures());
-    figures.extend(instructions::figures()?);
-    Ok(figures)
+    let figures = figures.into_iter();
+    figures
+        .map(|figure| figure.over(8, "tests/data/numerics"))
+        .collect()
 }

@@ -19,7 +19,6 @@ mod harness;
 mod house;
 mod kernel;
 mod logs;
-mod main_job;
 mod measured;
 mod naming;
 mod page;
@@ -30,7 +29,6 @@ mod report;
 mod resumable;
 mod topics;
 mod truth;
-mod uncertainty;
 mod values;
 mod watch;
 

@@ -49,6 +49,20 @@ pub(crate) fn is_committed(path: &Path, measured: &str, topic: &str) -> Result<b
     }
 }
 
+/// Renews a committed file with leave to `write`; otherwise `true` if it is what is measured, as [`is_committed`].
+pub(crate) fn renewed(
+    path: &Path,
+    measured: &str,
+    topic: &str,
+    write: bool,
+) -> Result<bool, Error> {
+    if !write {
+        return is_committed(path, measured, topic);
+    }
+    gyrocal_record::write_whole(path, measured.as_bytes())?;
+    Ok(true)
+}
+
 /// The folder of the documentation.
 pub(crate) fn docs() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs")

@@ -10,8 +10,8 @@ use crate::harness::topic::{Part, Topic};
 use crate::truth::Extent;
 use crate::{
     any_plant, before, calibration, catalogue, comparison, diagnosis_ground, embedded, fleet, gain,
-    generator, house, kernel, logs, main_job, measured, naming, paper, plant_peers, records,
-    report, truth, uncertainty, watch,
+    generator, house, kernel, logs, measured, naming, paper, plant_peers, records, report, truth,
+    watch,
 };
 
 /// All topics.
@@ -25,16 +25,17 @@ pub(crate) const TOPICS: [Topic; 8] = [
                 introduction: |_| kernel::INTRODUCTION.to_owned(),
                 ..part(
                     "filter",
-                    "The structured kernel: speed, scaling, rounding errors, instructions.",
+                    "The structured kernel: rounding errors, instructions, speed, scaling.",
                     of(
                         FILTER,
                         &[
                             "crates/figures/src/kernel.rs",
                             "crates/figures/src/kernel",
-                            "benches",
+                            "crates/figures/examples",
+                            "examples/step_times.rs",
                         ],
                     ),
-                    |to| kernel::figures(to.is_small(), to.write),
+                    kernel::figures,
                 )
             },
             Part {
@@ -42,7 +43,7 @@ pub(crate) const TOPICS: [Topic; 8] = [
                 introduction: |_| generator::INTRODUCTION.to_owned(),
                 ..part(
                     "generator",
-                    "The generator of Rust against others: speed, instructions, operations, random graphs.",
+                    "The generator of Rust against others: speed, instructions, operations, random graphs; derivation and builds.",
                     of(
                         FILTER,
                         &[
@@ -50,30 +51,18 @@ pub(crate) const TOPICS: [Topic; 8] = [
                             "crates/figures/src/generator",
                         ],
                     ),
-                    |to| generator::figures(to.is_small()),
+                    generator::figures,
                 )
             },
         ],
     },
     Topic {
         name: "calibration",
-        about: "From symbols to nine drift coefficients: consistency, exactness, cost, budget, the paper.",
+        about: "From symbols to nine drift coefficients: consistency, cost, budget, the paper.",
         parts: &[
             part(
-                "main-job",
-                "Records of another simulator, and populations beside the paper's filter.",
-                of(
-                    CALIBRATION,
-                    &[
-                        "crates/figures/src/main_job.rs",
-                        "crates/figures/src/main_job",
-                    ],
-                ),
-                |to| main_job::figures(to.is_small()),
-            ),
-            part(
                 "estimator",
-                "The batch estimator: consistency over a population, exactness, cost.",
+                "The estimators over a population: consistency, coverage, a second attitude, cost.",
                 of(
                     CALIBRATION,
                     &[
@@ -81,22 +70,22 @@ pub(crate) const TOPICS: [Topic; 8] = [
                         "crates/figures/src/calibration",
                     ],
                 ),
-                |to| calibration::figures(to.is_small()),
+                calibration::figures,
             ),
             part(
                 "budget",
                 "The uncertainty budget against simulated and calibrated runs.",
-                of(CALIBRATION, &["crates/figures/src/uncertainty.rs"]),
-                |to| uncertainty::figures(Extent::of(to)),
+                of(CALIBRATION, &["crates/figures/src/calibration"]),
+                calibration::budget::figures,
             ),
             part(
                 "paper",
-                "The paper, reproduced and corrected: docs/paper.md and its pictures.",
+                "The paper, reproduced and corrected: docs/paper.md, its pictures, its filter beside others.",
                 of(
                     CALIBRATION,
                     &["crates/figures/src/paper.rs", "crates/figures/src/paper"],
                 ),
-                |to| paper::figures(to.write),
+                paper::figures,
             ),
         ],
     },

@@ -39,22 +39,14 @@ pub(crate) fn two_digits(value: f64) -> String {
     }
 }
 
-/// A table of the page.
-pub(crate) struct Table(String);
-
-impl Table {
-    pub(crate) fn new<const N: usize>(header: [&str; N]) -> Self {
-        let rule = "|---".repeat(N);
-        Self(format!("| {} |\n{rule}|", header.join(" | ")))
-    }
-
-    pub(crate) fn row<const N: usize>(&mut self, cells: [String; N]) {
-        self.0 += &format!("\n| {} |", cells.join(" | "));
-    }
-
-    pub(crate) fn text(self) -> String {
-        self.0
-    }
+/// A table of Markdown.
+pub(crate) fn table(header: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
+    let rule = "|---".repeat(header.len());
+    let head = format!("| {} |\n{rule}|", header.join(" | "));
+    let rows = rows.into_iter();
+    rows.fold(head, |text, cells| {
+        format!("{text}\n| {} |", cells.join(" | "))
+    })
 }
 
 #[cfg(test)]

@@ -67,7 +67,7 @@ fn first_order_integration_is_right_only_on_its_own_data() {
             .fit
     };
     // Euler angles as states are over-confident, so even the rule's own data give 3.0 to 16 by
-    // seed (`cargo figures calibration --part main-job`); the wrong rule gives 180 to 200.
+    // seed (`cargo figures calibration --part paper`); the wrong rule gives 180 to 200.
     assert!(
         fit(&own).nis_mean() < 20.0,
         "{}",

@@ -3,69 +3,57 @@
 use std::fmt::Write as _;
 use std::time::Instant;
 
+use gyrocal_codegen::program::MOST_INSTRUCTIONS;
 use gyrocal_codegen::{Header, Program, emit_module};
 
+use crate::cost::Peak;
 use crate::error::Error;
 use crate::figure::Figure;
 
 const INSTRUCTIONS: usize = 37_000;
 const MOST_S: f64 = 2.0;
+
 /// The most that is accepted, and what the emitter is to refuse.
-const HUGE: [usize; 2] = [gyrocal_codegen::program::MOST_INSTRUCTIONS, 10_000_000];
+const HUGE: [(usize, &str); 2] = [(MOST_INSTRUCTIONS, "emitted"), (10_000_000, "refused")];
+
+/// Inputs and outputs of the programs.
+const INPUTS: usize = 20;
+const OUTPUTS: usize = 200;
 
 /// Seconds for a program of one function with some constants, sums and products.
-pub(crate) fn figure() -> Result<Figure, Error> {
+pub(super) fn figure() -> Result<Figure, Error> {
     let text = program(INSTRUCTIONS);
     let begin = Instant::now();
-    let module = emitted(&text)?;
+    let kilobytes = emitted(&text)?.len() / 1000;
     let seconds = begin.elapsed().as_secs_f64();
-    let name = format!(
-        "reading and emission of {INSTRUCTIONS} instructions, {} kB of Rust",
-        module.len() / 1000
-    );
+    let name =
+        format!("reading and emission of {INSTRUCTIONS} instructions, {kilobytes} kB of Rust");
     Ok(Figure::at_most(&name, MOST_S, seconds, "s"))
 }
 
 /// Time and memory of the largest program that is accepted, and of one that is refused.
-pub(crate) fn of_huge_programs() -> Result<Vec<Figure>, Error> {
+pub(super) fn of_huge_programs() -> Result<Vec<Figure>, Error> {
     let mut figures = Vec::new();
-    for count in HUGE {
+    for (count, target) in HUGE {
         let text = program(count);
-        let before = peak_mb(true);
-        let begin = Instant::now();
+        let peak = Peak::reset();
+        let peak_mb = || peak.as_ref().and_then(Peak::read_mb).unwrap_or(f64::NAN);
+        let (before_mb, begin) = (peak_mb(), Instant::now());
         let result = emitted(&text);
-        let seconds = begin.elapsed().as_secs_f64();
-        let memory = match (before, peak_mb(false)) {
-            (Some(before), Some(after)) => format!(", {} MB beside the text", after - before),
-            _ => String::new(),
-        };
+        let (seconds, memory_mb) = (begin.elapsed().as_secs_f64(), peak_mb() - before_mb);
         let answer = match &result {
             Ok(module) => format!("{} MB of Rust", module.len() / 1_000_000),
             Err(error) => error.to_string(),
         };
         let megabytes = text.len() / 1_000_000;
-        let what = format!("program of {count} instructions, {megabytes} MB");
-        let measured = format!("{seconds:.1} s{memory}: {answer}");
-        let is_accepted = count <= gyrocal_codegen::program::MOST_INSTRUCTIONS;
-        let mut figure = Figure::truth(&what, result.is_ok() == is_accepted);
-        figure.target = if is_accepted { "emitted" } else { "refused" }.to_owned();
-        figure.measured = measured;
-        figures.push(figure);
+        let name = format!("program of {count} instructions, {megabytes} MB");
+        figures.push(Figure {
+            target: target.to_owned(),
+            measured: format!("{seconds:.1} s, {memory_mb:.0} MB beside the text: {answer}"),
+            ..Figure::truth(&name, result.is_ok() == (target == "emitted"))
+        });
     }
     Ok(figures)
-}
-
-/// The largest memory of this process, MB, where the system tells it; from now on with `reset`.
-fn peak_mb(reset: bool) -> Option<u64> {
-    if reset {
-        std::fs::write("/proc/self/clear_refs", "5").ok()?;
-    }
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status
-        .lines()
-        .find_map(|line| line.strip_prefix("VmHWM:"))?;
-    let kilobytes: u64 = line.split_whitespace().next()?.parse().ok()?;
-    Some(kilobytes / 1000)
 }
 
 fn emitted(text: &str) -> Result<String, Error> {
@@ -78,7 +66,7 @@ fn emitted(text: &str) -> Result<String, Error> {
     Ok(emit_module(&program, &header)?)
 }
 
-/// A function of 20 inputs whose instructions each take two results before them.
+/// A function whose instructions each take two results before them.
 fn program(count: usize) -> String {
     let mut instructions = String::new();
     let mut state = 1_u64;
@@ -88,10 +76,9 @@ fn program(count: usize) -> String {
         state ^= state >> 27;
         (state.wrapping_mul(0x2545_f491_4f6c_dd1d) >> 33) as usize % below
     };
-    let outputs = 200;
-    for place in 0..count - outputs {
+    for place in 0..count - OUTPUTS {
         let _ = match place {
-            0..20 => write!(instructions, r#"["input",{place},0,{place}],"#),
+            0..INPUTS => write!(instructions, r#"["input",{place},0,{place}],"#),
             _ if draw(20) == 0 => {
                 write!(instructions, r#"["const",{place},{}.37],"#, draw(1000))
             }
@@ -104,26 +91,27 @@ fn program(count: usize) -> String {
             }
         };
     }
-    for nonzero in 0..outputs {
-        let from = count - outputs - 1 - nonzero;
-        let comma = if nonzero + 1 < outputs { "," } else { "" };
-        let _ = write!(instructions, r#"["output",0,{nonzero},{from}]{comma}"#);
-    }
-    let elements: Vec<String> = (0..20)
-        .map(|i| format!(r#"{{"name":"x{i}","unit":"1","doc":"element"}}"#))
-        .collect();
-    let nonzeros: Vec<String> = (0..outputs).map(|row| format!("[{row},0]")).collect();
+    let joined =
+        |count, text: &dyn Fn(usize) -> String| (0..count).map(text).collect::<Vec<_>>().join(",");
+    instructions += &joined(OUTPUTS, &|nonzero| {
+        format!(
+            r#"["output",0,{nonzero},{}]"#,
+            count - OUTPUTS - 1 - nonzero
+        )
+    });
+    let elements = joined(INPUTS, &|i| {
+        format!(r#"{{"name":"x{i}","unit":"1","doc":"element"}}"#)
+    });
+    let nonzeros = joined(OUTPUTS, &|row| format!("[{row},0]"));
     format!(
         r#"{{"schema_version":1,"name":"large","doc":"","casadi_version":"none",
-            "groups":[{{"name":"x","doc":"inputs","elements":[{}]}}],
+            "groups":[{{"name":"x","doc":"inputs","elements":[{elements}]}}],
             "functions":[{{"name":"f","doc":"function","source":"","domain":"",
                 "inputs":[{{"group":"x"}}],
-                "outputs":[{{"name":"y","doc":"results","unit":"1","rows":{outputs},"columns":1,
-                    "row_names":[],"column_names":[],"nonzeros":[{}]}}],
+                "outputs":[{{"name":"y","doc":"results","unit":"1","rows":{OUTPUTS},"columns":1,
+                    "row_names":[],"column_names":[],"nonzeros":[{nonzeros}]}}],
                 "work_size":{},"instructions":[{instructions}]}}],
             "model":null}}"#,
-        elements.join(","),
-        nonzeros.join(","),
-        count.min(HUGE[0]),
+        count.min(MOST_INSTRUCTIONS),
     )
 }

@@ -16,58 +16,68 @@ const NODES: usize = 30_500;
 /// Of the exporter alone; the emission has a figure of its own.
 const MOST_EXPORT_S: f64 = 1.0;
 
-pub(crate) fn figures(directory: &Path, python: &Path) -> Result<Vec<Figure>, Error> {
-    let mut figures = of_the_exporter(directory, python)?;
+pub(super) fn figures(directory: &Path, python: &Path) -> Result<Vec<Figure>, Error> {
+    let mut figures = of_the_exporter(directory, python)?.to_vec();
     let data = directory.join("operations");
-    let exporter = root().join("codegen/emit/exporter/run.py");
-    let source = root().join("codegen/emit/tests/data/operations");
+    let emit = root().join("codegen/emit");
     output(
         Command::new(python)
             .args(["-I", "-B"])
-            .args([&exporter, &source, &data])
+            .args([
+                emit.join("exporter/run.py"),
+                emit.join("tests/data/operations"),
+            ])
+            .arg(&data)
             .env("GRAPHS", GRAPHS.to_string())
             .env("EDGES", EDGES.to_string()),
     )?;
-    let points = std::fs::read_to_string(data.join("operations.txt"))?
+    let points = std::fs::read_to_string(data.join("operations.txt"))?;
+    let points = points.lines().count();
+    let test = "test --release --quiet --package gyrocal-codegen --features slow --test slow operations -- --nocapture";
+    let tested = output(
+        Command::new(cargo())
+            .current_dir(root())
+            .args(test.split(' '))
+            .env("GYROCAL_OPERATIONS_DATA", &data),
+    );
+    let printed = tested.as_deref().unwrap_or_default();
+    let listed = printed
         .lines()
-        .count();
-    let printed = tested(&data);
-    let listed: Vec<&str> = printed
-        .iter()
-        .flat_map(|text| text.lines())
-        .filter_map(|line| line.split_once("listed difference: ").map(|(_, rest)| rest))
-        .collect();
-    let (edges, graphs) = match &printed {
+        .filter_map(|line| line.split_once("listed difference: "));
+    let listed: Vec<&str> = listed.map(|(_, rest)| rest).collect();
+    let (edges, graphs) = match &tested {
         Ok(_) => (
             "0 beyond those listed".to_owned(),
             format!("{GRAPHS} of {GRAPHS}"),
         ),
         Err(error) => (error.to_string(), "not all, see above".to_owned()),
     };
-    let figure = |name: &str, target: &str, measured: String, runs: usize| {
-        let mut figure = Figure::truth(name, printed.is_ok()).over(runs, "1");
-        (figure.target, figure.measured) = (target.to_owned(), measured);
-        figure
+    let figure = |name: &str, target: &str, measured: String, runs: usize| Figure {
+        target: target.to_owned(),
+        measured,
+        ..Figure::truth(name, tested.is_ok()).over(runs, "1")
     };
-    figures.push(figure(
-        "values and slopes of operations at their edges: beyond 2 ulp of CasADi",
-        "0 beyond those listed",
-        edges,
-        points,
-    ));
     let what = "differences from CasADi that the manual lists, worst in ulp";
-    figures.push(Figure::note(what, listed.join("; ")).over(points, "1"));
-    figures.push(figure(
-        "random graphs: equal to the interpreter, and to CasADi to rounding",
-        "all",
-        graphs,
-        GRAPHS,
-    ));
+    figures.extend([
+        figure(
+            "values and slopes of operations at their edges: beyond 2 ulp of CasADi",
+            "0 beyond those listed",
+            edges,
+            points,
+        ),
+        Figure::note(what, listed.join("; ")).over(points, "1"),
+        figure(
+            "random graphs: equal to the interpreter, and to CasADi to rounding",
+            "all",
+            graphs,
+            GRAPHS,
+        ),
+    ]);
     Ok(figures)
 }
 
 /// Operations that the exporter takes, and the time of an export.
-fn of_the_exporter(directory: &Path, python: &Path) -> Result<Vec<Figure>, Error> {
+fn of_the_exporter(directory: &Path, python: &Path) -> Result<[Figure; 2], Error> {
     let script = directory.join("operations.py");
     std::fs::write(&script, SCRIPT)?;
     let printed = output(
@@ -84,39 +94,17 @@ fn of_the_exporter(directory: &Path, python: &Path) -> Result<Vec<Figure>, Error
             .map(|(_, rest)| rest)
             .collect()
     };
-    let (supported, refused) = (of("supported"), of("refused"));
-    let mut operations = Figure::truth(
-        "operations of SX: supported, refused with a reason",
-        refused == ["OP_PRINTME"],
-    );
-    operations.target = "all but I/O".to_owned();
-    operations.measured = format!(
-        "{}, {} ({})",
-        supported.len(),
-        refused.len(),
-        refused.join(", ")
-    );
+    let (supported, refused) = (of("supported").len(), of("refused"));
+    let name = "operations of SX: supported, refused with a reason";
+    let operations = Figure {
+        target: "all but I/O".to_owned(),
+        measured: format!("{supported}, {} ({})", refused.len(), refused.join(", ")),
+        ..Figure::truth(name, refused == ["OP_PRINTME"])
+    };
     let export = of("export");
     let words = export.first().and_then(|line| line.split_once(' '));
     let (seconds, count) = words.ok_or("the exporter printed no time")?;
     let what = format!("export of {count} instructions from CasADi");
     let time = Figure::at_most(&what, MOST_EXPORT_S, seconds.parse()?, "s");
-    Ok(vec![operations, time])
-}
-
-fn tested(data: &Path) -> Result<String, Error> {
-    output(
-        Command::new(cargo())
-            .current_dir(root())
-            .args([
-                "test",
-                "--release",
-                "--quiet",
-                "--package",
-                "gyrocal-codegen",
-            ])
-            .args(["--features", "slow", "--test", "slow"])
-            .args(["operations", "--", "--nocapture"])
-            .env("GYROCAL_OPERATIONS_DATA", data),
-    )
+    Ok([operations, time])
 }

@@ -1,32 +1,40 @@
-//! What a new plant takes: lines of Python and Rust of the examples, a build of one from nothing, and
-//! packages that build from their own files.
+//! What a model takes: lines of Python and Rust of the examples, first environment, derivation, builds from nothing,
+//! and packages that build from their own files.
 
 use std::path::Path;
 use std::process::Command;
-use std::time::Instant;
+use std::time::{Duration, Instant};
+
+use gyrocal_codegen::build::{Derivation, Settings};
 
 use crate::error::Error;
 use crate::figure::Figure;
 use crate::kernel::instructions::{cargo, output, root};
 
 const EXAMPLES: [&str; 2] = ["cart_pole", "quadrotor"];
-const MOST_PYTHON: f64 = 60.0;
-const MOST_RUST: f64 = 20.0;
+
+/// Files of an example with the marks of their comments, and most lines of code of them together.
+type Language = (&'static str, &'static str, &'static [&'static str], f64);
+const LANGUAGES: [Language; 2] = [
+    ("Python", "#", &["derive/main.py"], 60.0),
+    ("Rust", "//", &["build.rs", "src/lib.rs"], 20.0),
+];
 
 /// Lines of code of each example: its equations, and its build script with its filter. Blank lines and
 /// comments do not count, and neither do simulation and tests.
-pub(crate) fn lines() -> Result<Vec<Figure>, Error> {
+pub(super) fn lines() -> Result<Vec<Figure>, Error> {
     let mut figures = Vec::new();
     for example in EXAMPLES {
-        let directory = root().join("examples").join(example);
-        let python = code_lines(&directory.join("derive/main.py"), "#")?;
-        let rust = code_lines(&directory.join("build.rs"), "//")?
-            + code_lines(&directory.join("src/lib.rs"), "//")?;
-        for (what, limit, count) in [("Python", MOST_PYTHON, python), ("Rust", MOST_RUST, rust)] {
-            let name = format!("{example}: lines of {what} from equations to a filter");
-            let mut figure = Figure::within(&name, [f64::NEG_INFINITY, limit], count as f64);
-            figure.measured = count.to_string();
-            figures.push(figure);
+        for (language, comment, files, most) in LANGUAGES {
+            let mut count = 0;
+            for file in files {
+                count += code_lines(&root().join("examples").join(example).join(file), comment)?;
+            }
+            let name = format!("{example}: lines of {language} from equations to a filter");
+            figures.push(Figure {
+                measured: count.to_string(),
+                ..Figure::within(&name, [f64::NEG_INFINITY, most], count as f64)
+            });
         }
     }
     Ok(figures)
@@ -38,50 +46,56 @@ fn code_lines(path: &Path, comment: &str) -> Result<usize, Error> {
     let is_code = |line: &&str| {
         let line = line.trim();
         let is_simulation = ["pub mod random;", "pub mod simulation;"].contains(&line);
-        !(line.is_empty()
-            || line.starts_with(comment)
-            || line.starts_with("\"\"\"")
-            || is_simulation)
+        let is_comment = line.starts_with(comment) || line.starts_with("\"\"\"");
+        !(line.is_empty() || is_comment || is_simulation)
     };
     Ok(text.lines().filter(is_code).count())
 }
 
-/// Seconds of a build of an example and all that it depends on, without the network.
-pub(crate) fn clean_build() -> Result<Figure, Error> {
-    let target = tempfile::tempdir()?;
-    let begin = Instant::now();
-    output(
-        Command::new(cargo())
-            .current_dir(root())
-            .args(["build", "--offline", "--quiet"])
-            .args(["--package", "gyrocal-example-cart-pole"])
-            .env("CARGO_TARGET_DIR", target.path()),
-    )?;
-    let seconds = begin.elapsed().as_secs_f64();
-    let what = "cart_pole: build from nothing, packages downloaded before";
-    Ok(Figure::note(what, format!("{seconds:.0} s")))
-}
-
-/// Every package of the workspace, packaged in the order of publication and built from its own files,
-/// in a target directory of its own: cargo takes packages of one version for unchanged.
-pub(crate) fn packages() -> Result<Figure, Error> {
-    let what = "every package builds from its own files: cargo publish --workspace --dry-run";
-    let target = tempfile::tempdir()?;
-    let begin = Instant::now();
-    let result = output(
-        Command::new(cargo())
-            .current_dir(root())
-            .args(["publish", "--workspace", "--dry-run", "--allow-dirty"])
-            .env("CARGO_TARGET_DIR", target.path()),
-    );
-    let mut figure = Figure::truth(what, result.is_ok());
-    figure.measured = match result {
-        Ok(_) => format!("yes, {:.0} s", begin.elapsed().as_secs_f64()),
+/// First environment and derivation of the model, a build of an example and all that it depends on without the
+/// network, and every package of the workspace, packaged in the order of publication and built from its own files.
+pub(super) fn builds() -> Result<Vec<Figure>, Error> {
+    let scratch = tempfile::tempdir()?;
+    let mut settings = Settings::from_env();
+    settings.environments = Some(scratch.path().join("environments"));
+    let derive = || {
+        Derivation::open(root().join("codegen/derive"))?
+            .with_settings(settings.clone())
+            .derive()
+    };
+    let (first, again) = (derive()?.timings, derive()?.timings);
+    let seconds = |name, most, time: Duration| Figure::at_most(name, most, time.as_secs_f64(), "s");
+    let mut figures = vec![
+        seconds("first environment", 60.0, first.environment),
+        seconds(
+            "derivation and emission after an edit",
+            5.0,
+            again.derivation + again.emission,
+        ),
+    ];
+    // Target folders of their own: cargo takes packages of one version for unchanged.
+    let timed = |arguments: &str| {
+        let target = tempfile::tempdir()?;
+        let mut command = Command::new(cargo());
+        command.current_dir(root()).args(arguments.split(' '));
+        let begin = Instant::now();
+        let result = output(command.env("CARGO_TARGET_DIR", target.path()));
+        Ok::<_, Error>(result.map(|_| format!("{:.0} s", begin.elapsed().as_secs_f64())))
+    };
+    let example = timed("build --offline --quiet --package gyrocal-example-cart-pole")??;
+    let name = "cart_pole: build from nothing, packages downloaded before";
+    figures.push(Figure::note(name, example));
+    let packages = timed("publish --workspace --dry-run --allow-dirty")?;
+    let name = "every package builds from its own files: cargo publish --workspace --dry-run";
+    let mut figure = Figure::truth(name, packages.is_ok());
+    figure.measured = match packages {
+        Ok(time) => format!("yes, {time}"),
         Err(error) => {
             let text = error.to_string();
             let line = text.lines().find(|line| line.starts_with("error"));
             format!("no: {}", line.unwrap_or("no reason is told"))
         }
     };
-    Ok(figure)
+    figures.push(figure);
+    Ok(figures)
 }

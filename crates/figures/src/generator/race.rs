@@ -46,12 +46,11 @@ impl Form {
         }
     }
 
-    /// Target of a ratio: the equal bits need not be faster than what gives them up.
-    fn least(self, line: &Timed) -> f64 {
-        let is_one_of_five = line.angle == "0.6" && line.function != "cart_pole";
+    /// A ratio with the target of the fused form: the equal bits need not be faster than what gives them up.
+    fn judged(self, name: &str, bounds: [f64; 2], ratio: f64) -> Figure {
         match self {
-            Self::Fused if is_one_of_five => FIVE_LEAST,
-            _ => LEAST,
+            Self::Fused => Figure::within(name, bounds, ratio),
+            Self::EqualBits => Figure::note(name, format!("{ratio:.3}")),
         }
     }
 }
@@ -64,88 +63,105 @@ struct Timed {
 }
 
 impl Timed {
+    fn parsed(line: &str) -> Option<Self> {
+        let mut words = line.split_whitespace();
+        let (function, angle) = (words.next()?.to_owned(), words.next()?.to_owned());
+        let pairs = words.map(|word| {
+            let (name, number) = word.split_once('=')?;
+            Some((name.to_owned(), number.parse().ok()?))
+        });
+        Some(Self {
+            function,
+            angle,
+            ns: pairs.collect::<Option<_>>()?,
+        })
+    }
+
+    /// The competitors that the program has.
+    fn competitors(&self) -> impl Iterator<Item = &'static str> {
+        COMPETITORS
+            .into_iter()
+            .filter(|name| self.ns.contains_key(*name))
+    }
+
     /// The least time of a competitor over another time.
     fn ratio(&self, ours: &str) -> f64 {
-        let best = COMPETITORS.iter().filter_map(|name| self.ns.get(*name));
-        best.copied().fold(f64::INFINITY, f64::min) / self.ns[ours]
+        let best = self.competitors().map(|name| self.ns[name]);
+        best.fold(f64::INFINITY, f64::min) / self.ns[ours]
     }
 }
 
 /// The figures; the other generators are packages of this interpreter.
-pub(crate) fn figures(directory: &Path, python: &Path) -> Result<Vec<Figure>, Error> {
+pub(super) fn figures(directory: &Path, python: &Path) -> Result<Vec<Figure>, Error> {
     let source = contest::written(directory, python)?;
     let mut figures = Vec::new();
     for form in [Form::Fused, Form::EqualBits] {
-        let contest = contest::built(&source, form)?;
-        let printed = output(Command::new(&contest.program).arg(ROUNDS.to_string()))?;
-        let timed: Vec<Timed> = printed.lines().filter_map(parsed).collect();
+        let (program, target) = contest::built(&source, form)?;
+        let printed = output(Command::new(&program).arg(ROUNDS.to_string()))?;
+        let timed: Vec<Timed> = printed.lines().filter_map(Timed::parsed).collect();
         if timed.is_empty() {
             return Err(format!("no times in: {printed}").into());
         }
         let what = format!("{}: target of the compared functions", form.name());
-        figures.push(Figure::note(&what, contest.target.to_owned()));
-        figures.extend(of_times(form, &timed));
-        figures.extend(of_instructions(form, &contest.program, &timed)?);
+        figures.push(Figure::note(&what, target.to_owned()));
+        for line in &timed {
+            figures.extend(of_times(form, line));
+        }
+        figures.extend(of_all(form, &timed));
+        figures.extend(of_instructions(form, &program, &timed)?);
     }
     Ok(figures)
 }
 
-fn parsed(line: &str) -> Option<Timed> {
-    let mut words = line.split_whitespace();
-    let (function, angle) = (words.next()?.to_owned(), words.next()?.to_owned());
-    let pairs = words.map(|word| {
-        let (name, number) = word.split_once('=')?;
-        Some((name.to_owned(), number.parse().ok()?))
-    });
-    Some(Timed {
-        function,
-        angle,
-        ns: pairs.collect::<Option<_>>()?,
-    })
+fn of_times(form: Form, line: &Timed) -> [Figure; 3] {
+    let name = format!("{}: {}, {} rad", form.name(), line.function, line.angle);
+    let is_one_of_five = line.angle == "0.6" && line.function != "cart_pole";
+    let least = match form {
+        Form::Fused if is_one_of_five => FIVE_LEAST,
+        _ => LEAST,
+    };
+    let times = ["ours", "value"].into_iter().chain(line.competitors());
+    let times: Vec<String> = times.map(|name| format!("{:.1}", line.ns[name])).collect();
+    let sines = 100.0 * line.ns["sines"] / line.ns["ours"];
+    let ratio = |what: &str, least: f64, ours: &str| {
+        Figure::within(
+            &format!("{name}: {what}"),
+            [least, f64::INFINITY],
+            line.ratio(ours),
+        )
+    };
+    [
+        ratio("best competitor / ours", least, "ours"),
+        ratio("the same, ours by value", LEAST, "value"),
+        Figure::note(
+            &format!("{name}: ours, by value, wrenfold, SymForce, CasADi's C"),
+            format!("{} ns; sines {sines:.0} %", times.join(", ")),
+        ),
+    ]
+    .map(|figure| figure.over(ROUNDS, ""))
 }
 
-fn of_times(form: Form, timed: &[Timed]) -> Vec<Figure> {
-    let mut figures = Vec::new();
-    let mut product = 1.0;
-    for line in timed {
-        let name = format!("{}: {}, {} rad", form.name(), line.function, line.angle);
-        let ratio = line.ratio("ours");
-        product *= ratio;
-        let bounds = [form.least(line), f64::INFINITY];
-        let what = format!("{name}: best competitor / ours");
-        figures.push(Figure::within(&what, bounds, ratio).over(ROUNDS, ""));
-        let what = format!("{name}: the same, ours by value");
-        let by_value = Figure::within(&what, [LEAST, f64::INFINITY], line.ratio("value"));
-        figures.push(by_value.over(ROUNDS, ""));
-        let times = ["ours", "value"].iter().chain(&COMPETITORS);
-        let times = times.filter_map(|name| Some(format!("{:.1}", line.ns.get(*name)?)));
-        let text = format!(
-            "{} ns; sines {:.0} %",
-            times.collect::<Vec<_>>().join(", "),
-            100.0 * line.ns["sines"] / line.ns["ours"]
-        );
-        let what = format!("{name}: ours, by value, wrenfold, SymForce, CasADi's C");
-        figures.push(Figure::note(&what, text).over(ROUNDS, ""));
-    }
-    let mean = f64::powf(product, 1.0 / timed.len() as f64);
-    let what = format!(
-        "{}: geometric mean of all functions and angles",
-        form.name()
-    );
-    figures.push(match form {
-        Form::Fused => Figure::within(&what, [MEAN, f64::INFINITY], mean),
-        Form::EqualBits => Figure::note(&what, format!("{mean:.3}")),
-    });
-    let apart = timed.iter().map(|line| line.ns["apart"]);
-    let apart = apart.fold(0.0, f64::max);
-    let what = format!(
-        "{}: largest difference of a competitor, relative",
-        form.name()
-    );
-    let mut figure = Figure::within(&what, [0.0, APART], apart);
-    (figure.target, figure.measured) = (format!("<= {APART:e}"), format!("{apart:.1e}"));
-    figures.push(figure);
-    figures
+fn of_all(form: Form, timed: &[Timed]) -> [Figure; 2] {
+    let logarithms: f64 = timed.iter().map(|line| line.ratio("ours").ln()).sum();
+    let mean = (logarithms / timed.len() as f64).exp();
+    let apart = timed
+        .iter()
+        .map(|line| line.ns["apart"])
+        .fold(0.0, f64::max);
+    let name = |what: &str| format!("{}: {what}", form.name());
+    let what = name("geometric mean of all functions and angles");
+    [
+        form.judged(&what, [MEAN, f64::INFINITY], mean),
+        Figure {
+            target: format!("<= {APART:e}"),
+            measured: format!("{apart:.1e}"),
+            ..Figure::within(
+                &name("largest difference of a competitor, relative"),
+                [0.0, APART],
+                apart,
+            )
+        },
+    ]
 }
 
 /// Instructions of ours over those of the best competitor, of all calls of a run.
@@ -154,27 +170,22 @@ fn of_instructions(form: Form, program: &Path, timed: &[Timed]) -> Result<Vec<Fi
         let what = format!("{}: instructions not counted", form.name());
         return Ok(vec![Figure::note(&what, Tool::Valgrind.missing())]);
     };
-    let calls = COUNTED.to_string();
-    let count = |function: &str, contender: &str| {
-        instructions(&valgrind, program, &[&calls, function, contender])
-    };
     let mut figures = Vec::new();
     for line in timed.iter().filter(|line| line.angle == "0.6") {
-        let nothing = count(&line.function, "nothing")?;
-        let ours = count(&line.function, "ours")? - nothing;
+        let calls = COUNTED.to_string();
+        let count = |of: &str| instructions(&valgrind, program, &[&calls, &line.function, of]);
+        let nothing = count("nothing")?;
         let mut best = f64::INFINITY;
-        for name in COMPETITORS
-            .iter()
-            .filter(|name| line.ns.contains_key(**name))
-        {
-            best = best.min(count(&line.function, name)? - nothing);
+        for name in line.competitors() {
+            best = best.min(count(name)? - nothing);
         }
-        let (name, of) = (form.name(), &line.function);
-        let what = format!("{name}: {of}, 0.6 rad: instructions, ours / best competitor");
-        figures.push(match form {
-            Form::Fused => Figure::within(&what, [f64::NEG_INFINITY, INSTRUCTIONS], ours / best),
-            Form::EqualBits => Figure::note(&what, format!("{:.3}", ours / best)),
-        });
+        let ratio = (count("ours")? - nothing) / best;
+        let what = format!(
+            "{}: {}, 0.6 rad: instructions, ours / best competitor",
+            form.name(),
+            line.function
+        );
+        figures.push(form.judged(&what, [f64::NEG_INFINITY, INSTRUCTIONS], ratio));
     }
     Ok(figures)
 }

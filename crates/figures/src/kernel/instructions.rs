@@ -1,5 +1,4 @@
-//! Instructions of one step, counted by callgrind on the example `filter_steps`, and on
-//! `factorised_steps` for information.
+//! Instructions of one step, counted by callgrind on the example `filter_steps` of this package.
 //!
 //! The number belongs to a compiler version and a plain build; with another one the figure is
 //! printed and not judged. `cargo figures kernel --part filter --write` renews the committed numbers.
@@ -7,19 +6,28 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+pub(crate) use gyrocal_testkit::workspace as root;
 use gyrocal_testkit::{Tool, tool};
 use serde::{Deserialize, Serialize};
 
-use super::{Error, RULES};
+use super::RULES;
+use crate::error::Error;
 use crate::figure::Figure;
 
 const COMMITTED: &str = "tests/data/numerics/instructions.toml";
-/// Multiples of 64, the number of turns after which a chart is orthonormalised.
-const STEPS: [u32; 2] = [512, 2560];
+/// A multiple of 64, the number of turns after which a chart is orthonormalised.
+const STEPS: u32 = 512;
 /// Relative.
 const TOLERANCE: f64 = 0.02;
 
-/// Committed counts, with compiler and target.
+/// Variables with flags of the compiler.
+const FLAGS: [&str; 3] = [
+    "RUSTFLAGS",
+    "CARGO_ENCODED_RUSTFLAGS",
+    "CARGO_BUILD_RUSTFLAGS",
+];
+
+/// Counts of a step by the rules, with compiler and target.
 #[derive(Debug, Deserialize, Serialize)]
 struct Counts {
     /// `rustc --version`.
@@ -32,94 +40,50 @@ struct Counts {
     rk4: f64,
 }
 
-/// Counts of both forms.
-struct Counted {
-    /// Counts of the default form, which are committed.
-    counts: Counts,
-    /// Instructions of an Euler and a Runge-Kutta step on the factors.
-    factors: [f64; 2],
-}
-
-/// Counts and compares with the committed numbers; without valgrind a note with the reason.
-pub(crate) fn figures() -> Result<Vec<Figure>, Error> {
-    let Counted {
-        counts: counted,
-        factors,
-    } = match counted()? {
+/// Counts and compares with the committed numbers, which `write` renews; without valgrind a note with the reason.
+pub(crate) fn figures(write: bool) -> Result<Vec<Figure>, Error> {
+    let not_judged = |reason| Figure::note("instructions not judged", reason);
+    let counted = match counted()? {
         Ok(counted) => counted,
-        Err(reason) => return Ok(vec![skipped(&reason)]),
+        Err(reason) => return Ok(vec![not_judged(reason)]),
     };
-    let text = std::fs::read_to_string(root().join(COMMITTED)).map_err(|error| {
-        format!("{COMMITTED}: {error}; cargo figures kernel --part filter --write makes it")
-    })?;
-    let committed: Counts =
-        toml::from_str(&text).map_err(|error| format!("{COMMITTED}: {error}"))?;
-    let same = committed.rustc == counted.rustc && committed.target == counted.target;
+    let path = root().join(COMMITTED);
+    if write {
+        let text = toml::to_string(&counted)?;
+        let text = format!(
+            "# Instructions of one filter step under callgrind, in a plain release build by this\n\
+             # compiler. `cargo figures kernel --part filter --write` renews them.\n{text}"
+        );
+        std::fs::write(&path, text)?;
+    }
+    let committed: Counts = toml::from_str(&std::fs::read_to_string(&path)?)?;
+    let [here, there] = [&counted, &committed].map(|of| format!("{} on {}", of.rustc, of.target));
     let mut figures = Vec::new();
     for (rule, measured, expected) in [
         ("euler", counted.euler, committed.euler),
         ("rk4", counted.rk4, committed.rk4),
     ] {
-        let what = format!("{rule} step: instructions under callgrind");
+        let range = [1.0 - TOLERANCE, 1.0 + TOLERANCE].map(|bound| bound * expected);
+        let name = format!("{rule} step: instructions under callgrind");
+        let figure = Figure::within(&name, range, measured);
         figures.push(Figure {
-            name: what,
             target: format!("{expected:.0} within {} %", TOLERANCE * 100.0),
             measured: format!("{measured:.0}"),
-            runs: 1,
-            seeds: String::new(),
-            holds: same.then(|| (measured / expected - 1.0).abs() <= TOLERANCE),
-            ..Figure::default()
+            holds: figure.holds.filter(|_| here == there),
+            ..figure
         });
     }
-    for ((rule, _), count) in RULES.iter().zip(factors) {
-        let what = format!("{rule} step on the factors: instructions under callgrind");
-        figures.push(Figure::note(&what, format!("{count:.0}")));
-    }
-    if !same {
-        figures.push(skipped(&format!(
-            "they belong to {} on {}, this is {} on {}; `cargo figures kernel --part filter --write` renews them",
-            committed.rustc, committed.target, counted.rustc, counted.target
+    if here != there {
+        figures.push(not_judged(format!(
+            "they belong to {there}, this is {here}; `cargo figures kernel --part filter --write` renews them"
         )));
     }
     Ok(figures)
 }
 
-/// Counts and writes the committed numbers.
-pub(crate) fn renewed() -> Result<Vec<Figure>, Error> {
-    let Counted {
-        counts: counted, ..
-    } = counted()??;
-    let text = format!(
-        "# Instructions of one filter step under callgrind, in a plain release build by this\n\
-         # compiler. `cargo figures kernel --part filter --write` renews them.\n{}",
-        toml::to_string(&counted)?
-    );
-    std::fs::write(root().join(COMMITTED), text)?;
-    let note = |rule: &str, count: f64| {
-        Figure::note(
-            &format!("{rule} step: instructions, written"),
-            format!("{count:.0}"),
-        )
-    };
-    Ok(vec![note("euler", counted.euler), note("rk4", counted.rk4)])
-}
-
-fn skipped(reason: &str) -> Figure {
-    Figure::note("instructions not judged", reason.to_owned())
-}
-
-pub(crate) fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
-
 /// The counts, or the reason why they are not available here.
-fn counted() -> Result<Result<Counted, String>, Error> {
-    let flags = [
-        "RUSTFLAGS",
-        "CARGO_ENCODED_RUSTFLAGS",
-        "CARGO_BUILD_RUSTFLAGS",
-    ];
-    if let Some(flags) = flags.iter().find(|flags| std::env::var_os(flags).is_some()) {
+fn counted() -> Result<Result<Counts, String>, Error> {
+    if let Some(flags) = FLAGS.iter().find(|flags| std::env::var_os(flags).is_some()) {
         return Ok(Err(format!(
             "they belong to a plain build, and {flags} is set"
         )));
@@ -128,46 +92,40 @@ fn counted() -> Result<Result<Counted, String>, Error> {
         return Ok(Err(Tool::Valgrind.missing()));
     };
     let compiler = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
-    let rustc = output(Command::new(compiler).arg("--version"))?
-        .trim()
-        .to_owned();
-    let [euler, rk4] = counts_of(&valgrind, "filter_steps")?;
-    let factors = counts_of(&valgrind, "factorised_steps")?;
-    let target = format!("{} {}", std::env::consts::ARCH, std::env::consts::OS);
-    let counts = Counts {
-        rustc,
-        target,
-        euler,
-        rk4,
-    };
-    Ok(Ok(Counted { counts, factors }))
+    let rustc = output(Command::new(compiler).arg("--version"))?;
+    let program = filter_steps()?;
+    let count =
+        |rule: &str, steps: u32| instructions(&valgrind, &program, &[rule, &steps.to_string()]);
+    let start = count("euler", 0)?;
+    let of = |rule| Ok::<_, Error>(((count(rule, STEPS)? - start) / f64::from(STEPS)).round());
+    let [(euler, _), (rk4, _)] = RULES;
+    Ok(Ok(Counts {
+        rustc: rustc.trim().to_owned(),
+        target: format!("{} {}", std::env::consts::ARCH, std::env::consts::OS),
+        euler: of(euler)?,
+        rk4: of(rk4)?,
+    }))
 }
 
-/// Instructions of a step of an example, by rule.
-fn counts_of(valgrind: &Path, example: &str) -> Result<[f64; 2], Error> {
-    let program = built(example)?;
-    let mut counts = [0.0_f64; 2];
-    for (count, (rule, _)) in counts.iter_mut().zip(RULES) {
-        let of = |steps: u32| instructions(valgrind, &program, &[rule, &steps.to_string()]);
-        let [few, many] = [of(STEPS[0])?, of(STEPS[1])?];
-        *count = ((many - few) / f64::from(STEPS[1] - STEPS[0])).round();
-    }
-    Ok(counts)
-}
-
-/// Builds an example; returns its path.
-fn built(example: &str) -> Result<PathBuf, Error> {
+/// Builds the example; returns its path. What it depends on is built with this program.
+fn filter_steps() -> Result<PathBuf, Error> {
     let messages = output(
         Command::new(cargo())
             .current_dir(root())
-            .args(["build", "--release", "--quiet", "--package", "gyrocal"])
-            .args(["--example", example, "--message-format", "json"]),
+            .args([
+                "build",
+                "--release",
+                "--quiet",
+                "--package",
+                env!("CARGO_PKG_NAME"),
+            ])
+            .args(["--example", "filter_steps", "--message-format", "json"]),
     )?;
     let path = messages.lines().find_map(|line| {
         let (_, rest) = line.split_once("\"executable\":\"")?;
         Some(PathBuf::from(rest.split('"').next()?))
     });
-    path.ok_or_else(|| format!("cargo built no example {example}").into())
+    path.ok_or_else(|| "cargo built no example filter_steps".into())
 }
 
 /// All instructions of a run of a program, counted by callgrind.
@@ -182,9 +140,8 @@ pub(crate) fn instructions(
             .arg(program)
             .args(arguments),
     )?;
-    let collected = report
-        .lines()
-        .find_map(|line| line.split_once("Collected :"));
+    let mut lines = report.lines();
+    let collected = lines.find_map(|line| line.split_once("Collected :"));
     let (_, count) = collected.ok_or("callgrind printed no line `Collected :`")?;
     Ok(count.trim().parse()?)
 }

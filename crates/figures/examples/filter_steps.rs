@@ -1,12 +1,7 @@
-//! As the example `filter_steps`, with the covariance as factors:
-//! `cargo run --release --example factorised_steps -- euler|rk4 STEPS`.
-//!
-//! A program of its own, because a second form in the same one changes what the compiler
-//! inlines into the first.
+//! Runs a number of filter steps and nothing else, for profilers and instruction counters:
+//! `cargo run --release --package gyrocal-figures --example filter_steps -- euler|rk4 STEPS`.
 
-use gyrocal::{
-    Discretisation, FactorisedPlatformFilter, FilterSettings, InitialAttitude, Integration, Site,
-};
+use gyrocal::{Discretisation, FilterSettings, InitialAttitude, Integration, PlatformFilter, Site};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -25,8 +20,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         },
         ..FilterSettings::at_site(Site::at_latitude_deg(39.1))
     };
-    let mut filter =
-        FactorisedPlatformFilter::<f64>::factorised(&settings, &InitialAttitude::aligned())?;
+    let mut filter = PlatformFilter::<f64>::new(&settings, &InitialAttitude::aligned())?;
     let sample = [0.0, 0.0, 1.0];
     let mut nis_sum = 0.0;
     for _ in 0..steps.parse::<u32>()? {
