@@ -29,13 +29,8 @@ pub(crate) fn figures(write: bool) -> Result<Vec<Figure>, Error> {
     values.put("families", families.len().to_string());
     values.put("entries", entries::of(&families));
     let text = page::fill(TEMPLATE, &values)?;
-    let mut same = true;
     let path = page::docs().join("catalogue.md");
-    if write {
-        gyrocal_record::write_whole(&path, text.as_bytes())?;
-    } else {
-        same &= page::is_committed(&path, &text, TOPIC)?;
-    }
+    let mut same = page::renewed(&path, &text, TOPIC, write)?;
     let mut drawn = 0;
     for effect in families {
         let Some(picture) = signature::picture(effect)? else {

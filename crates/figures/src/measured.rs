@@ -68,15 +68,10 @@ pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
     ring_laser::measure(&mut measured)?;
     let text = page::fill(TEMPLATE, &measured.values)?;
     let path = page::docs().join("measured-data.md");
+    let same = page::renewed(&path, &text, "instruments --part measured", context.write)?;
     let mut figures = measured.figures;
-    if context.write {
-        gyrocal_record::write_whole(&path, text.as_bytes())?;
-    } else {
-        figures.push(Figure::truth(
-            "docs/measured-data.md is what is measured",
-            page::is_committed(&path, &text, "instruments --part measured")?,
-        ));
-    }
+    let name = "docs/measured-data.md is what is measured";
+    figures.push(Figure::truth(name, same));
     Ok(figures)
 }
 

@@ -31,36 +31,29 @@ pub(crate) fn fill(template: &str, values: &Values) -> Result<String, Error> {
     }
 }
 
-/// `true` if a committed file equals the measurement, numbers within their last printed digit. If not,
-/// the first difference is printed with the command that renews the file.
-pub(crate) fn is_committed(path: &Path, measured: &str, topic: &str) -> Result<bool, Error> {
-    let committed = std::fs::read_to_string(path)
-        .map_err(|error| format!("{}: {error}; write it with --write", path.display()))?;
-    match difference(&committed, measured) {
-        None => Ok(true),
-        Some((line, found)) => {
-            eprintln!(
-                "{}, line {line}: measured is `{found}`; renew the page with `cargo figures \
-                 {topic} --write`",
-                path.display()
-            );
-            Ok(false)
-        }
-    }
-}
-
-/// Renews a committed file with leave to `write`; otherwise `true` if it is what is measured, as [`is_committed`].
+/// Renews a committed file with leave to `write`. Otherwise `true` if it equals the measurement, numbers within
+/// their last printed digit; if not, the first difference is printed with the command that renews the file.
 pub(crate) fn renewed(
     path: &Path,
     measured: &str,
     topic: &str,
     write: bool,
 ) -> Result<bool, Error> {
-    if !write {
-        return is_committed(path, measured, topic);
+    if write {
+        gyrocal_record::write_whole(path, measured.as_bytes())?;
+        return Ok(true);
     }
-    gyrocal_record::write_whole(path, measured.as_bytes())?;
-    Ok(true)
+    let committed = std::fs::read_to_string(path)
+        .map_err(|error| format!("{}: {error}; write it with --write", path.display()))?;
+    let difference = difference(&committed, measured);
+    if let Some((line, found)) = &difference {
+        eprintln!(
+            "{}, line {line}: measured is `{found}`; renew the page with `cargo figures \
+             {topic} --write`",
+            path.display()
+        );
+    }
+    Ok(difference.is_none())
 }
 
 /// The folder of the documentation.

@@ -1,7 +1,6 @@
 //! The uncertainty budget against simulated and calibrated runs.
 
 use gyrocal_evaluation::{BudgetTrial, SpreadTrial, TrueCoefficients};
-use gyrocal_statistics::Proportion;
 use gyrocal_truth::Coefficients;
 
 use super::names;
@@ -60,11 +59,9 @@ pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
 /// Truths from the prior: the budget's claim.
 fn of_drawn(name: &str) -> Vec<Row<'static, BudgetTrial>> {
     let held = |trial: &BudgetTrial, i: usize| trial.error[i].abs() <= trial.expanded[i];
-    // Intervals of one run err together.
-    let of_all =
-        move |trial: &BudgetTrial| Some(Proportion::of((0..9).map(|i| held(trial, i))).share());
+    let of_all = move |trial: &BudgetTrial| (0..9).map(|i| held(trial, i)).collect::<Vec<_>>();
     let all = format!("{name}: share of all 95 % intervals that hold the truth");
-    let mut rows = vec![Row::mean(all, of_all).between(COVERAGE, COVERAGE_REASON)];
+    let mut rows = vec![Row::each(all, of_all).between(COVERAGE, COVERAGE_REASON)];
     for (i, coefficient) in names() {
         let square = move |trial: &BudgetTrial| Some((trial.error[i] / trial.combined[i]).powi(2));
         let name = |what: &str| format!("{name}: {coefficient}: {what}");

@@ -6,8 +6,11 @@ use gyrocal_diagnosis::prose::explained;
 
 use super::signature;
 
+/// Title of a chapter, and what is in it.
+type Chapter = (&'static str, fn(&Enters) -> bool);
+
 /// Chapters of the page: the parts of the model that effects enter.
-const CHAPTERS: [(&str, fn(&Enters) -> bool); 6] = [
+const CHAPTERS: [Chapter; 6] = [
     ("Gyros", |enters| matches!(enters, Enters::Rates(_))),
     ("Accelerometers", |enters| {
         matches!(enters, Enters::Outputs(_))

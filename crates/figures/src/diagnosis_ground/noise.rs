@@ -39,9 +39,12 @@ const KINDS: [(&str, Fault); 5] = [
     ("sigma 0.8 of declared", Fault::Ratio(0.8)),
 ];
 
+/// A cause in words, and how it is made.
+type Cause = (&'static str, fn() -> Term);
+
 /// Physical causes far larger than any that must be found; the audit of noise should not react. They are not in the
 /// catalogue, and made for each record.
-const CAUSES: [(&str, fn() -> Term); 8] = [
+const CAUSES: [Cause; 8] = [
     ("a step of 0.01 deg/h", || drift_step(0.01)),
     ("a step of 0.3 deg/h", || drift_step(0.3)),
     ("an accelerometer's step of 40 sigma", || {
