@@ -7,9 +7,9 @@ use gyrocal_report::{
     ComparedEstimate, ComparedQuantity, Comparison, Convergence, EstimateHistory, ParameterHistory,
     Picture, ResidualChannel, Residuals,
 };
-use gyrocal_truth::{Coefficients, Simulation};
+use gyrocal_truth::{Coefficients, Simulation, euler_rule, simulate};
 
-use super::ways::{Data, Found, PAPER_DAYS, SHOWN_SEED, WAYS, key, scenario};
+use super::ways::{Found, PAPER_DAYS, SHOWN_SEED, WAYS, key, scenario};
 use crate::error::Error;
 
 /// Number of rows between points of a curve.
@@ -31,8 +31,8 @@ struct Track {
 /// All pictures of the page, with what is found in the record that is shown.
 pub(super) fn pictures(found: &Found) -> Result<Vec<Named>, Error> {
     let scenario = scenario(SHOWN_SEED, PAPER_DAYS);
-    let by_rule = Data::PaperRule.simulated(scenario.clone())?;
-    let exact = Data::Exact.simulated(scenario)?;
+    let by_rule = euler_rule(&scenario)?;
+    let exact = simulate(&scenario)?;
     let tracks = [
         Track::of(&by_rule, &Options::paper_baseline())?,
         Track::of(&exact, &Options::paper_baseline())?,

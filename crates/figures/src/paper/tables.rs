@@ -6,11 +6,11 @@ use gyrocal_record::AXES;
 use gyrocal_statistics::{
     NORMAL_97_5, Proportion, mean, mean_square_band, median, quantile, root_mean_square,
 };
-use gyrocal_truth::Scenario;
+use gyrocal_truth::{Scenario, euler_rule, simulate};
 
 use super::ways::{
-    COORDINATES, Data, EARTH_RATES, Found, PAPER_DAYS, SEEDS, SHOWN_SEED, WAYS, as_printed, key,
-    nis, scenario,
+    COORDINATES, EARTH_RATES, Found, PAPER_DAYS, SEEDS, SHOWN_SEED, WAYS, as_printed, key, nis,
+    scenario,
 };
 use crate::error::Error;
 use crate::values::{Values, fixed, table, two_digits};
@@ -256,8 +256,8 @@ fn without_noise(values: &mut Values) -> Result<(), Error> {
         initial_angles_sigma_deg: [0.0; 3],
         ..noisy
     };
-    let exact = Data::Exact.simulated(quiet.clone())?.record;
-    let rule = Data::PaperRule.simulated(quiet)?.record;
+    let exact = simulate(&quiet)?.record;
+    let rule = euler_rule(&quiet)?.record;
     let apart_g: Vec<f64> = exact
         .accel_g
         .iter()

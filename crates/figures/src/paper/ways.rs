@@ -7,7 +7,6 @@ use gyrocal_calibration::Options;
 use gyrocal_evaluation::{CalibrationTrial, Target};
 use gyrocal_truth::{Coefficients, Scenario, Simulation, euler_rule, simulate};
 
-use crate::error::Error;
 use crate::harness::sources::{CALIBRATION, of};
 use crate::harness::{Population, Row};
 
@@ -22,67 +21,52 @@ pub(super) const PAPER_DAYS: u32 = 3;
 pub(super) type Found = BTreeMap<String, CalibrationTrial>;
 
 /// Simulation of a record.
-#[derive(Clone, Copy, PartialEq)]
-pub(super) enum Data {
-    /// By the independent simulator.
-    Exact,
-    /// By the rule of the paper's filter.
-    PaperRule,
-    /// By the independent simulator, with Earth rate as printed in (6).
-    Printed,
-}
+type Simulator = fn(&Scenario) -> Result<Simulation, gyrocal_truth::Error>;
 
-/// A filter on a record.
-#[derive(Clone, Copy)]
-enum Filter {
-    Paper,
-    Batch,
-    Streaming(Integration, Recentring<f64>),
-    /// The default streaming filter, with Earth rate as printed in (6).
-    Printed,
-}
+/// Name of a filter in this program, and its options.
+type Filter = (&'static str, fn() -> Options);
 
-const EVERY: Filter = Filter::Streaming(Integration::RK4, Recentring::EveryStep);
-const SINGLE: Filter = Filter::Streaming(Integration::RK4, Recentring::Never);
-const BEYOND_RAD: f64 = 20.0 * core::f64::consts::PI / 180.0;
-const BEYOND: Filter = Filter::Streaming(Integration::RK4, Recentring::Beyond(BEYOND_RAD));
+const EVERY: Filter = ("every", Options::streaming);
+const BATCH: Filter = ("batch", Options::default);
+const SINGLE: Filter = ("single", || streaming(Integration::RK4, Recentring::Never));
+const BEYOND: Filter = ("beyond", || {
+    streaming(Integration::RK4, Recentring::Beyond(20.0_f64.to_radians()))
+});
 
-const fn euler(substeps: u32) -> Filter {
-    Filter::Streaming(Integration::Euler { substeps }, Recentring::EveryStep)
-}
+/// The default streaming filter, with Earth rate as printed in (6).
+const PRINTED_FILTER: &str = "printed_filter";
 
-/// Records, their days, and the filters on each with their names in this program.
-type Bench = (Data, u32, &'static [(&'static str, Filter)]);
+/// Records, their days, and the filters on each.
+type Bench = (Simulator, u32, &'static [Filter]);
 
 const BENCHES: [Bench; 4] = [
-    (Data::PaperRule, PAPER_DAYS, &[("own_rule", Filter::Paper)]),
     (
-        Data::Exact,
+        euler_rule,
+        PAPER_DAYS,
+        &[("own_rule", Options::paper_baseline)],
+    ),
+    (
+        simulate,
         PAPER_DAYS,
         &[
-            ("paper", Filter::Paper),
-            ("every", EVERY),
-            ("batch", Filter::Batch),
-            ("single", SINGLE),
-            ("beyond", BEYOND),
-            ("euler_1", euler(1)),
-            ("euler_4", euler(4)),
-            ("euler_16", euler(16)),
-            ("euler_64", euler(64)),
-            ("printed_filter", Filter::Printed),
+            ("paper", Options::paper_baseline),
+            EVERY,
+            BATCH,
+            SINGLE,
+            BEYOND,
+            ("euler_1", || euler(1)),
+            ("euler_4", || euler(4)),
+            ("euler_16", || euler(16)),
+            ("euler_64", || euler(64)),
+            (PRINTED_FILTER, Options::streaming),
         ],
     ),
+    (simulate, 1, &[SINGLE, BEYOND, EVERY, BATCH]),
     (
-        Data::Exact,
-        1,
-        &[
-            ("single", SINGLE),
-            ("beyond", BEYOND),
-            ("every", EVERY),
-            ("batch", Filter::Batch),
-        ],
+        with_printed_rate,
+        PAPER_DAYS,
+        &[("printed_both", Options::streaming)],
     ),
-    (Data::Printed, PAPER_DAYS, &[("printed_both", EVERY)]),
 ];
 
 /// The paper's combination, the same filter on exact data, and the corrected filters.
@@ -105,7 +89,7 @@ pub(super) const COORDINATES: [(&str, &str); 4] = [
 pub(super) const EARTH_RATES: [(&str, &str); 3] = [
     ("every", "data and filter with latitude"),
     ("printed_both", "data and filter as printed"),
-    ("printed_filter", "data with latitude, filter as printed"),
+    (PRINTED_FILTER, "data with latitude, filter as printed"),
 ];
 
 /// Targets of the mean NIS, with their reasons.
@@ -139,34 +123,27 @@ pub(super) fn key(name: &str, days: u32) -> String {
     format!("{name}, {days} d")
 }
 
-impl Data {
-    pub(super) fn simulated(self, mut scenario: Scenario) -> Result<Simulation, Error> {
-        if self == Self::Printed {
-            scenario.latitude_deg = as_printed(scenario.latitude_deg);
-        }
-        Ok(match self {
-            Self::PaperRule => euler_rule(&scenario)?,
-            Self::Exact | Self::Printed => simulate(&scenario)?,
-        })
+/// The bench with Earth rate as printed in (6).
+fn with_printed_rate(scenario: &Scenario) -> Result<Simulation, gyrocal_truth::Error> {
+    simulate(&Scenario {
+        latitude_deg: as_printed(scenario.latitude_deg),
+        ..scenario.clone()
+    })
+}
+
+fn streaming(integration: Integration, recentring: Recentring<f64>) -> Options {
+    Options {
+        discretisation: Discretisation {
+            integration,
+            recentring,
+            ..Discretisation::default()
+        },
+        ..Options::streaming()
     }
 }
 
-impl Filter {
-    fn options(self) -> Options {
-        match self {
-            Self::Paper => Options::paper_baseline(),
-            Self::Batch => Options::default(),
-            Self::Printed => Options::streaming(),
-            Self::Streaming(integration, recentring) => Options {
-                discretisation: Discretisation {
-                    integration,
-                    recentring,
-                    ..Discretisation::default()
-                },
-                ..Options::streaming()
-            },
-        }
-    }
+fn euler(substeps: u32) -> Options {
+    streaming(Integration::Euler { substeps }, Recentring::EveryStep)
 }
 
 /// The population of all filters.
@@ -174,15 +151,15 @@ pub(super) fn population() -> Population<'static, Found> {
     let sources = of(CALIBRATION, &[file!()]);
     Population::new("paper", [1, SEEDS, SEEDS], sources, |seed| {
         let mut found = Found::new();
-        for (data, days, filters) in BENCHES {
-            let mut simulation = data.simulated(scenario(seed, days))?;
+        for (simulated, days, filters) in BENCHES {
+            let mut simulation = simulated(&scenario(seed, days))?;
             let latitude_deg = simulation.bench.latitude_deg;
-            for (name, filter) in filters {
-                simulation.bench.latitude_deg = match filter {
-                    Filter::Printed => as_printed(latitude_deg),
+            for (name, options) in filters {
+                simulation.bench.latitude_deg = match *name {
+                    PRINTED_FILTER => as_printed(latitude_deg),
                     _ => latitude_deg,
                 };
-                let trial = CalibrationTrial::of_simulation(&simulation, &filter.options())?;
+                let trial = CalibrationTrial::of_simulation(&simulation, &options())?;
                 found.insert(key(name, days), trial);
             }
         }
