@@ -9,26 +9,29 @@ mod target;
 
 use crate::error::Error;
 use crate::figure::Figure;
+use crate::harness::{Context, Size};
 
-/// All figures. The small version replays a day in double precision instead of three, and fewer
-/// records.
-pub(crate) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
-    let mut figures = match target::Tools::find() {
+/// The record that the firmware replays.
+const RECORD: &str = "examples/data/three_days.csv";
+
+/// All figures of the part. The small version replays a day in double precision instead of three, and fewer
+/// records; a number of records is of those of single precision alone.
+pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
+    let mut figures = precision::figures(context)?;
+    if matches!(context.size, Size::Most(_)) {
+        return Ok(figures);
+    }
+    let tools = target::Tools::find();
+    match &tools {
         Some(tools) => {
-            let mut figures = firmware::figures(&tools, small)?;
-            figures.extend(firmware::watch(&tools)?);
-            figures.push(firmware::example(&tools)?);
-            figures.extend(emitted::figures(&tools)?);
-            figures.extend(c_interface::figures(Some(&tools), &firmware::on_host()?)?);
-            figures
+            figures.extend(firmware::figures(tools, context.is_small())?);
+            figures.extend(emitted::figures(tools)?);
         }
         None => {
             let reason = "a tool is missing".to_owned();
-            let mut figures = vec![Figure::note("on the target: not judged", reason)];
-            figures.extend(c_interface::figures(None, &firmware::on_host()?)?);
-            figures
+            figures.push(Figure::note("on the target: not judged", reason));
         }
-    };
-    figures.extend(precision::figures(small)?);
+    }
+    figures.extend(c_interface::figures(tools.as_ref(), &firmware::on_host()?)?);
     Ok(figures)
 }

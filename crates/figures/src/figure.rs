@@ -79,10 +79,19 @@ impl Figure {
 
     /// A cost with an upper limit. NaN stands for a failed measurement, which does not hold.
     pub(crate) fn at_most(name: &str, limit: f64, measured: f64, unit: &str) -> Self {
+        let decimals = if measured.fract() == 0.0 || measured.abs() >= 1e3 {
+            0
+        } else {
+            2
+        };
+        let [target, measured_text] = [
+            format!("<= {limit} {unit}"),
+            format!("{measured:.decimals$} {unit}"),
+        ];
         Self {
-            target: format!("<= {limit} {unit}"),
-            measured: format!("{measured:.2} {unit}"),
-            ..Self::within(name, [0.0, limit], measured)
+            target: target.trim_end().to_owned(),
+            measured: measured_text.trim_end().to_owned(),
+            ..Self::within(name, [f64::NEG_INFINITY, limit], measured)
         }
     }
 
@@ -108,17 +117,6 @@ impl Figure {
         }
     }
 
-    /// A share without a target, with its exact 95 % interval.
-    pub(crate) fn note_share(name: &str, share: Proportion, seeds: impl Into<String>) -> Self {
-        let [low, high] = share.interval(0.95);
-        let measured = match share.trials {
-            0 => "nothing to measure on".to_owned(),
-            _ => format!("{:.3} ({low:.3} to {high:.3})", share.share()),
-        };
-        Self::note(name, measured)
-            .of_share(share)
-            .over(share.trials as usize, seeds)
-    }
 
     /// The same figure with the share that it states.
     pub(crate) fn of_share(self, share: Proportion) -> Self {

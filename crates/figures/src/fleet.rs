@@ -13,12 +13,13 @@ use std::time::Instant;
 
 use gyrocal_record::write_json;
 use gyrocal_testkit::{Tool, leave_out, system_python, timing, tool};
-use serde::Deserialize;
+use serde_json::Value;
 
 use crate::error::Error;
 use crate::figure::Figure;
-use crate::kernel::instructions::{output, root};
-use crate::truth::Extent;
+use crate::harness::sources::of;
+use crate::harness::{Context, Population, Size};
+use crate::kernel::instructions::{cargo, output, root};
 
 const PACKAGE: &str = "crates/python";
 const RECORD: &str = "examples/data/hidden_fault.csv";
@@ -27,17 +28,29 @@ const BENCH: &str = "examples/data/hidden_fault.bench.toml";
 /// Exit code of the command with `--exit-code` if effects were found.
 const EFFECTS_FOUND: i32 = 3;
 
-/// All figures; with a number of records the statistics alone, over as many fleets of each kind at most.
-pub(crate) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
-    let mut figures = levels::figures(extent)?;
-    figures.extend(recurring::figures(extent)?);
-    if !extent.small {
-        figures.extend(whole::figures(extent)?);
-    }
-    if extent.most.is_none() {
-        figures.extend(of_package(extent.small)?);
+/// Records that Spark maps.
+const RECORDS_OF_SPARK: usize = 60;
+
+/// All figures of the part; with a number of records the statistics alone.
+pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
+    let mut figures = levels::figures(context)?;
+    figures.extend(recurring::figures(context)?);
+    figures.extend(whole::figures(context)?);
+    if !matches!(context.size, Size::Most(_)) {
+        figures.extend(of_package(context.is_small())?);
     }
     Ok(figures)
+}
+
+/// A population of fleets.
+fn fleets<'a, R>(
+    name: &str,
+    seeds: [u64; 3],
+    job: impl Fn(u64) -> Result<R, Error> + Sync + 'a,
+) -> Population<'a, R> {
+    const FILES: &[&str] = &["crates/figures/src/fleet.rs", "crates/figures/src/fleet"];
+    const PACKAGES: &[&str] = &["crates/fleet", "crates/diagnosis", "crates/evaluation"];
+    Population::new(format!("fleets {name}"), seeds, of(PACKAGES, FILES), job)
 }
 
 /// Those of the package. The small version repeats less and leaves the fleet to the tests of the package.
@@ -48,8 +61,14 @@ fn of_package(small: bool) -> Result<Vec<Figure>, Error> {
         let reason = "crates/python/build failed".to_owned();
         return Ok(vec![Figure::note("the Python package: not judged", reason)]);
     }
-    let wheel = wheel()?;
-    let mut figures = vec![size(&wheel)?, import(if small { 3 } else { 15 })?];
+    let mut wheels = std::fs::read_dir(folder().join("wheels"))?;
+    let wheel = wheels
+        .next()
+        .ok_or("crates/python/build made no wheel")??
+        .path();
+    let megabytes = std::fs::metadata(&wheel)?.len() as f64 / 1e6;
+    let mut figures = vec![Figure::at_most("wheel: size", 15.0, megabytes, "MB")];
+    figures.push(import(if small { 3 } else { 15 })?);
     figures.push(first_diagnosis(&wheel)?);
     if !small {
         figures.push(spark(RECORDS_OF_SPARK)?);
@@ -63,35 +82,32 @@ fn folder() -> PathBuf {
     root().join("target/python")
 }
 
-fn wheel() -> Result<PathBuf, Error> {
-    let mut wheels = std::fs::read_dir(folder().join("wheels"))?;
-    let wheel = wheels.next().ok_or("crates/python/build made no wheel")??;
-    Ok(wheel.path())
-}
-
-fn size(wheel: &Path) -> Result<Figure, Error> {
-    let megabytes = std::fs::metadata(wheel)?.len() as f64 / 1e6;
-    Ok(Figure::at_most("wheel: size", 15.0, megabytes, "MB"))
-}
-
 /// The result of a measurement in Python.
-#[derive(Deserialize)]
-struct Seconds {
-    seconds: f64,
+struct Measured(Value);
+
+impl Measured {
+    /// A number; NaN, which no target is met by, if it was not measured.
+    fn of(&self, key: &str) -> f64 {
+        self.0[key].as_f64().unwrap_or(f64::NAN)
+    }
+
+    fn is(&self, key: &str) -> bool {
+        self.0[key] == true
+    }
 }
 
-fn measured<T: for<'a> Deserialize<'a>>(arguments: &[&str]) -> Result<T, Error> {
+fn measured(arguments: &[&str]) -> Result<Measured, Error> {
     measured_by(&folder().join("environment/bin/python"), arguments)
 }
 
-fn measured_by<T: for<'a> Deserialize<'a>>(python: &Path, arguments: &[&str]) -> Result<T, Error> {
+fn measured_by(python: &Path, arguments: &[&str]) -> Result<Measured, Error> {
     let mut python = Command::new(python);
     let script = root().join(PACKAGE).join("measure.py");
     let printed = output(python.current_dir(root()).arg(script).args(arguments))?;
     let json = printed.lines().find(|line| line.starts_with('{'));
-    Ok(serde_json::from_str(
+    Ok(Measured(serde_json::from_str(
         json.ok_or("no measurement was printed")?,
-    )?)
+    )?))
 }
 
 /// Files of the installed package. The wheel that they come in has a list of its parts with a number of its own.
@@ -108,7 +124,7 @@ fn installed() -> Result<Vec<PathBuf>, Error> {
 
 /// The same of a measurement that takes minutes: what was measured of this package by these scripts, with these
 /// other packages on this processor, is kept.
-fn measured_once<T: for<'a> Deserialize<'a>>(arguments: &[&str]) -> Result<T, Error> {
+fn measured_once(arguments: &[&str]) -> Result<Measured, Error> {
     let mut measures = DefaultHasher::new();
     timing::processor().hash(&mut measures);
     let files = ["measure.py", "measure_fleet.py", "requirements-test.lock"];
@@ -126,20 +142,11 @@ fn measured_once<T: for<'a> Deserialize<'a>>(arguments: &[&str]) -> Result<T, Er
         && let Ok(found) = serde_json::from_str(&text)
     {
         eprintln!("measured before: {}", kept.display());
-        return Ok(found);
+        return Ok(Measured(found));
     }
-    let found: serde_json::Value = measured(arguments)?;
-    write_json(&kept, &found)?;
-    Ok(serde_json::from_value(found)?)
-}
-
-/// Records that Spark maps.
-const RECORDS_OF_SPARK: usize = 60;
-
-/// What Spark gave.
-#[derive(Deserialize)]
-struct Spark {
-    equal: bool,
+    let found = measured(arguments)?;
+    write_json(&kept, &found.0)?;
+    Ok(found)
 }
 
 /// The documented lines for Spark: rows of the same bits.
@@ -148,14 +155,14 @@ fn spark(records: usize) -> Result<Figure, Error> {
     let Some(python) = tool(Tool::Spark) else {
         return Ok(Figure::note(name, Tool::Spark.missing()));
     };
-    let found: Spark = measured_by(&python, &["spark", &records.to_string()])?;
-    Ok(Figure::truth(name, found.equal).over(records, format!("0..{records}")))
+    let found = measured_by(&python, &["spark", &records.to_string()])?;
+    Ok(Figure::truth(name, found.is("equal")).over(records, format!("0..{records}")))
 }
 
 fn import(rounds: usize) -> Result<Figure, Error> {
     let mut seconds = Vec::with_capacity(rounds);
     for _ in 0..rounds {
-        seconds.push(measured::<Seconds>(&["import"])?.seconds);
+        seconds.push(measured(&["import"])?.of("seconds"));
     }
     seconds.sort_by(f64::total_cmp);
     let name = "import of the package, NumPy included: median";
@@ -197,32 +204,22 @@ fn first_diagnosis(wheel: &Path) -> Result<Figure, Error> {
 
 /// The call on columns in memory over the command on the file, whole process; minima, taken in turns.
 fn overhead(rounds: usize) -> Result<Figure, Error> {
-    let mut build = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    let build = build.current_dir(root());
-    output(build.args(["build", "--release", "--quiet", "--package", "gyrocal-cli"]))?;
+    let build = ["build", "--release", "--quiet", "--package", "gyrocal-cli"];
+    output(Command::new(cargo()).current_dir(root()).args(build))?;
     let target = std::env::current_exe()?;
     let command = target
         .parent()
         .ok_or("no folder of this program")?
         .join("gyrocal");
+    let arguments = ["diagnose", RECORD, "--bench", BENCH];
     let (mut by_command, mut by_call) = (f64::INFINITY, f64::INFINITY);
     for _ in 0..rounds {
         let started = Instant::now();
-        let mut command = Command::new(&command);
-        output(
-            command
-                .current_dir(root())
-                .args(["diagnose", RECORD, "--bench", BENCH]),
-        )?;
+        output(Command::new(&command).current_dir(root()).args(arguments))?;
         by_command = by_command.min(started.elapsed().as_secs_f64());
-        by_call = by_call.min(measured::<Seconds>(&["diagnosis"])?.seconds);
+        by_call = by_call.min(measured(&["diagnosis"])?.of("seconds"));
     }
     let percent = 100.0 * (by_call / by_command - 1.0);
     let name = "diagnosis from Python over the command, minima in turns: overhead";
-    Ok(Figure {
-        target: "<= 5 %".to_owned(),
-        measured: format!("{percent:.1} % of {by_command:.2} s"),
-        ..Figure::within(name, [f64::NEG_INFINITY, 5.0], percent)
-    }
-    .over(rounds, ""))
+    Ok(Figure::at_most(name, 5.0, percent, "%").over(rounds, ""))
 }

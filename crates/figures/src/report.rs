@@ -2,7 +2,6 @@
 
 mod first_minutes;
 
-use std::ffi::OsString;
 use std::path::Path;
 
 use gyrocal_calibration::{FittedPlatform, NoiseModel, Options, Run};
@@ -10,17 +9,16 @@ use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
 use gyrocal_instruments::multi_position::{
     MultiPositionSettings, multi_position_test, prepare_logs,
 };
-use gyrocal_instruments::{Description, Log, StopSettings, find_stops, read_record};
+use gyrocal_instruments::{Description, Log, StopSettings, find_stops};
 use gyrocal_pages::{Part, of_diagnosis, of_open_loop, of_tumble, page};
 use gyrocal_record::{Bench, Input, Manifest, Record};
 use gyrocal_testkit::browser::Browser;
-use gyrocal_testkit::contracts::check_contracts;
-use gyrocal_testkit::dialects::check_dialects;
 use gyrocal_testkit::workspace;
 use gyrocal_truth::{Scenario, simulate};
 
 use crate::error::Error;
 use crate::figure::Figure;
+use crate::harness::Context;
 
 /// Window of the browser, px.
 const WINDOW: [u32; 2] = [1280, 800];
@@ -44,106 +42,53 @@ struct Looked {
     picture: Option<&'static str>,
 }
 
-/// All figures of the topic; with `write` also the pictures in the documentation.
-pub(crate) fn figures(small: bool, write: bool) -> Result<Vec<Figure>, Error> {
-    let mut pages = vec![
+/// All figures of the part; with leave to write also the pictures in the documentation.
+pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
+    let pages = [
         diagnosed("three_days", "clean", "report-clean.png")?,
         diagnosed("hidden_fault", "hidden fault", "report-hidden.png")?,
         tumbled()?,
+        long(if context.is_small() { FEWER_ROWS } else { ROWS })?,
     ];
-    pages.push(long(if small { FEWER_ROWS } else { ROWS })?);
     let folder = tempfile::tempdir()?;
+    let path = folder.path().join("page.html");
     let mut browser = Browser::start(WINDOW);
     let mut figures = Vec::new();
     for one in pages {
         let html = page(vec![one.part]).to_html().map_err(failed)?;
-        let megabytes = html.len() as f64 / 1e6;
         let name = |what: &str| format!("{}: {what}", one.name);
-        figures.push(Figure::at_most(&name("size"), one.most, megabytes, "MB"));
+        let mut most = |what: &str, limit: f64, measured: f64, unit: &str| {
+            figures.push(Figure::at_most(&name(what), limit, measured, unit));
+        };
+        most("size", one.most, html.len() as f64 / 1e6, "MB");
         let Some(browser) = &mut browser else {
-            figures.push(Figure::note(
-                &name("in a browser"),
-                "not judged: no chromium".to_owned(),
-            ));
+            let why = "not judged: no chromium".to_owned();
+            figures.push(Figure::note(&name("in a browser"), why));
             continue;
         };
-        let path = folder.path().join("page.html");
         std::fs::write(&path, html)?;
         browser.open(&path);
-        let paint_s = browser.first_paint_s();
-        figures.push(Figure::at_most(
-            &name("time to first paint"),
-            PAINT_S,
-            paint_s,
-            "s",
-        ));
-        let errors = browser.console_errors().len() as f64;
-        figures.push(Figure::within(&name("console errors"), [0.0, 0.0], errors));
-        let requests = browser.requests().len() as f64;
-        figures.push(Figure::within(&name("requests"), [0.0, 0.0], requests));
-        let bottom = browser
-            .number("document.querySelector('.first-screen').getBoundingClientRect().bottom");
-        figures.push(Figure::at_most(
-            &name("end of the first screen"),
-            800.0,
-            bottom,
+        most("time to first paint", PAINT_S, browser.first_paint_s(), "s");
+        let errors = browser.console_errors().len();
+        most("console errors", 0.0, errors as f64, "");
+        most("requests", 0.0, browser.requests().len() as f64, "");
+        let bottom = "document.querySelector('.first-screen').getBoundingClientRect().bottom";
+        let height = f64::from(WINDOW[1]);
+        most(
+            "end of the first screen",
+            height,
+            browser.number(bottom),
             "px",
-        ));
-        if let Some(picture) = one.picture.filter(|_| write) {
+        );
+        if let Some(picture) = one.picture.filter(|_| context.write) {
             let folder = crate::page::docs().join("pictures");
             std::fs::write(folder.join(picture), browser.screenshot())?;
         }
     }
-    if !small {
+    if !context.is_small() {
         figures.push(first_minutes::figure()?);
     }
-    figures.push(dialects());
-    figures.push(contracts());
     Ok(figures)
-}
-
-/// Files of the test set of formats and dialects that are read right, or refused with the line to add.
-fn dialects() -> Figure {
-    let outcomes = check_dialects(|path, map| {
-        let description = Description::parse(map, "map.toml").map_err(words)?;
-        let file = read_record(path, &description).map_err(words)?;
-        Ok(file.record().clone())
-    });
-    let right = outcomes.iter().filter(|one| one.fault.is_empty()).count() as f64;
-    let refused = outcomes.iter().filter(|one| one.refused).count();
-    let all = outcomes.len() as f64;
-    let of_features = match refused {
-        0 => String::new(),
-        _ => format!(" ({refused} refused with the feature to build: Parquet, MCAP)"),
-    };
-    let what = "formats and dialects read right or refused with the line to add";
-    Figure::within(&format!("{what}, of {all}{of_features}"), [all, all], right)
-}
-
-/// Commands whose result for programs conforms to its published schema.
-fn contracts() -> Figure {
-    let commands = gyrocal_cli::commands_with_json();
-    let outcomes = check_contracts(&commands, |arguments| {
-        let words = ["gyrocal", "--quiet"].map(str::to_owned);
-        let words = words.iter().chain(arguments).map(OsString::from);
-        match gyrocal_cli::run(words) {
-            0 => Ok(()),
-            code => Err(format!("exit code {code}")),
-        }
-    });
-    for one in outcomes.iter().filter(|one| !one.fault.is_empty()) {
-        println!("{}: {}", one.command, one.fault);
-    }
-    let valid = outcomes.iter().filter(|one| one.fault.is_empty()).count() as f64;
-    let all = commands.len() as f64;
-    let name = format!("JSON of every command valid by its schema, of {all}");
-    Figure::within(&name, [all, all], valid)
-}
-
-/// The words of an error with its advice.
-fn words(error: impl Into<gyrocal_instruments::InstrumentError>) -> String {
-    let error = error.into();
-    format!("{error}; {}", error.advice())
 }
 
 /// A failure of a library as that of this topic.

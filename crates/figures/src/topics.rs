@@ -262,7 +262,7 @@ pub(crate) const TOPICS: [Topic; 8] = [
                 "structure",
                 "Structure of the tree, cost of a build and of the gate.",
                 of(COMMAND, &["crates", "codegen", "src"]),
-                |to| house::figures(to.is_small()),
+                house::figures,
             ),
             part(
                 "before",
@@ -279,7 +279,7 @@ pub(crate) const TOPICS: [Topic; 8] = [
                         COMMAND,
                         &["crates/figures/src/report.rs", "crates/figures/src/report"],
                     ),
-                    |to| report::figures(to.is_small(), to.write),
+                    report::figures,
                 )
             },
             Part {
@@ -288,10 +288,10 @@ pub(crate) const TOPICS: [Topic; 8] = [
                     "fleet",
                     "The Python package: its wheel, a first diagnosis with it, fleets of records.",
                     of(
-                        &["crates/python", "crates/fleet"],
+                        &["crates/python", "crates/fleet", "crates/evaluation"],
                         &["crates/figures/src/fleet.rs", "crates/figures/src/fleet"],
                     ),
-                    |to| fleet::figures(Extent::of(to)),
+                    fleet::figures,
                 )
             },
         ],
@@ -312,17 +312,14 @@ pub(crate) const TOPICS: [Topic; 8] = [
                             "crates/figures/src/embedded",
                         ],
                     ),
-                    |to| embedded::figures(to.is_small()),
+                    embedded::figures,
                 )
             },
             part(
                 "watch",
                 "The watch beside the filter: false alarms, delays, jumps, sets in simulated platform-years.",
-                of(
-                    &["", "crates/evaluation"],
-                    &["crates/figures/src/watch.rs", "crates/figures/src/watch"],
-                ),
-                |to| watch::figures(Extent::of(to)),
+                watch::SOURCES,
+                watch::figures,
             ),
         ],
     },

@@ -1,49 +1,66 @@
-//! The watch: false alarms in platform-years, delays beside the e-process of one effect, jumps, sets, and
-//! records of the nonlinear simulator.
+//! The watch: false alarms in platform-years, delays beside the test of one effect, jumps, sets, and records of the
+//! nonlinear simulator.
 //!
-//! The gains of a filter do not depend on the noise. So one run of the real filter over a record
-//! without noise gives the closed loop of a platform (`platform.rs`), through which errors of many
-//! realisations of the noise go in linear simulation (`lane.rs`); each has the scores of its own
-//! innovations beside the signatures that all share. Effects enter by the specific force of the
-//! simulator and not by the courses that the watch foretells.
+//! The gains of a filter do not depend on the noise. So one run of the real filter over a record without noise gives
+//! the closed loop of a platform (`platform.rs`), through which errors of many realisations of the noise go in linear
+//! simulation (`lane.rs`), each with a watch of its own. Effects enter by the specific force of the simulator and not
+//! by the courses that the watch foretells.
 
 mod delays;
-mod knocks;
 mod lane;
 mod noise;
 mod nonlinear;
 mod platform;
 mod sound;
 
+use gyrocal::watch::EFFECTS_BY_DEFAULT;
+
 use crate::error::Error;
 use crate::figure::Figure;
-use crate::truth::Extent;
-
-/// Realisations of the noise of each platform.
-const LANES: usize = 25;
+use crate::harness::sources::{Sources, of};
+use crate::harness::{Context, Population};
 
 /// Sizes of the watch and of its filter.
 const STATES: usize = gyrocal::Platform::STATES;
 const COLUMNS: usize = 6;
-const EFFECTS: usize = gyrocal::watch::EFFECTS_BY_DEFAULT.len();
-const ONSETS: usize = 10;
-const JUMPS: usize = 12;
+const EFFECTS: usize = EFFECTS_BY_DEFAULT.len();
 
 /// Time between samples, s, and how many a day has.
 const INTERVAL_S: f64 = 60.0;
 const DAY: usize = 1440;
+const DAY_S: f64 = 86_400.0;
 
 /// Standard deviations of the declared noise of a sample: drift, deg/h, and specific force, g.
 const DRIFT_NOISE: f64 = 0.002;
 const ACCEL_NOISE_G: f64 = 1e-5;
 
-/// All figures. The small version has a few platforms over weeks.
-pub(crate) fn figures(extent: Extent) -> Result<Vec<Figure>, Error> {
-    let mut figures = sound::false_alarms(extent)?;
-    figures.extend(sound::undeclared_walks(extent)?);
-    figures.extend(delays::information(extent)?);
-    figures.extend(delays::figures(extent)?);
-    figures.extend(knocks::figures(extent)?);
-    figures.extend(nonlinear::figures(extent)?);
+/// Realisations of the noise of each platform, and of the small version.
+const LANES: usize = 10;
+const FEW_LANES: usize = 3;
+
+/// What can move the results.
+pub(crate) const SOURCES: Sources = of(
+    &["", "crates/diagnosis", "crates/truth"],
+    &["crates/figures/src/watch.rs", "crates/figures/src/watch"],
+);
+
+/// All figures of the part.
+pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
+    let mut figures = sound::figures(context)?;
+    figures.extend(delays::figures(context)?);
+    figures.extend(nonlinear::figures(context)?);
     Ok(figures)
+}
+
+/// Platforms of the usual population, by their numbers.
+fn platforms<'a, R>(
+    name: &str,
+    [full, small]: [u64; 2],
+    job: impl Fn(u64) -> Result<R, Error> + Sync + 'a,
+) -> Population<'a, R> {
+    Population::new(format!("watch {name}"), [0, full, small], SOURCES, job)
+}
+
+fn lanes(context: &Context) -> usize {
+    if context.is_small() { FEW_LANES } else { LANES }
 }

@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::process::Command;
 
+use super::RECORD;
 use super::target::{Tools, build_on_host};
 use crate::error::Error;
 use crate::figure::Figure;
@@ -11,92 +12,99 @@ use crate::kernel::instructions::output;
 const PACKAGE: &str = "tests/firmware";
 const PROGRAM: &str = "gyrocal-firmware-test";
 const WATCH_PROGRAM: &str = "gyrocal-watch-test";
-/// Instructions of a step with Runge-Kutta and with Euler.
+
+/// Instructions of a step with Runge-Kutta and with Euler, and their largest spread between steps, %.
 const INSTRUCTIONS: [(&str, f64); 2] = [("rk4", 9000.0), ("euler", 6500.0)];
+const SPREAD: f64 = 2.0;
+
+/// Bytes that the firmware prints, by the beginning of their line, with their limits.
+const BYTES: [(&str, &str, Option<f64>); 8] = [
+    ("f32: filter state", "size filter", Some(2400.0)),
+    ("f32 rk4: stack of a step", STACK_OF_A_STEP, Some(1300.0)),
+    (
+        "f32: stack of construction",
+        STACK_OF_CONSTRUCTION,
+        Some(1500.0),
+    ),
+    ("f32 rk4: stack of update", "stack update", None),
+    ("f32 rk4: stack of coast", "stack coast", None),
+    ("f32 rk4: stack of save", "stack save", None),
+    ("f32 rk4: stack of restore", "stack restore", None),
+    ("f32: saved state", "size saved", None),
+];
+const STACK_OF_A_STEP: &str = "stack step";
+const STACK_OF_CONSTRUCTION: &str = "stack start";
+
+/// What the watch takes more than the filter alone: its line, that of the filter, and the limit.
+const OF_WATCH: [(&str, &str, &str, f64); 3] = [
+    (
+        "instructions, mean",
+        "instructions mean",
+        "instructions mean",
+        12_000.0,
+    ),
+    (
+        "instructions, worst step",
+        "instructions most",
+        "instructions mean",
+        20_000.0,
+    ),
+    ("RAM, bytes", "size watched", "size filter", 16_000.0),
+];
 
 pub(super) fn figures(tools: &Tools, small: bool) -> Result<Vec<Figure>, Error> {
-    // The linker finds a panic; what it says then is the error here.
-    let firmware = tools.build(PACKAGE, &[])?.join(PROGRAM);
-    let host = build_on_host(PACKAGE, &[])?.join(PROGRAM);
-    let mut figures = vec![Figure::truth(
-        "f32: links with a panic handler that does not exist",
-        true,
-    )];
-    figures.push(soft_double(tools, &firmware, "f32")?);
-    for (rule, limit) in INSTRUCTIONS {
-        let lines = Lines(tools.run(&firmware, rule)?);
-        figures.extend(of_rule("f32", rule, &lines, Some(limit))?);
-        figures.push(equal("f32", rule, &lines, &host)?);
-        if rule == "rk4" {
-            figures.push(bad_input("f32", &lines));
-            figures.extend(memory(&lines)?);
+    let mut figures = Vec::new();
+    for (number, features) in [("f32", &[][..]), ("f64", &["--features", "double"])] {
+        // The linker finds a panic; what it says then is the error here.
+        let firmware = tools.build(PACKAGE, features)?.join(PROGRAM);
+        let host = build_on_host(PACKAGE, features)?.join(PROGRAM);
+        let name = format!("{number}: links with a panic handler that does not exist");
+        figures.push(Figure::truth(&name, true));
+        let is_single = number == "f32";
+        if is_single {
+            figures.push(soft_double(tools, &firmware, number)?);
+        }
+        for (rule, limit) in INSTRUCTIONS {
+            let short = if small && !is_single { " short" } else { "" };
+            let words = format!("{rule}{short}");
+            let lines = Lines(tools.run(&firmware, &words)?);
+            // Software for double precision takes as long as its operands need.
+            let limits = is_single.then_some([limit, SPREAD]);
+            figures.extend(of_rule(&format!("{number} {rule}"), &lines, limits)?);
+            let name = format!("{number} {rule}: all bits on the target are those of the host");
+            figures.push(equal(&name, &words, &lines, &host)?);
+            if rule == "rk4" {
+                figures.push(bad_input(number, &lines));
+                if is_single {
+                    figures.extend(memory(&lines)?);
+                }
+            }
         }
     }
-    let double = ["--features", "double"];
-    let firmware = tools.build(PACKAGE, &double)?.join(PROGRAM);
-    let host = build_on_host(PACKAGE, &double)?.join(PROGRAM);
-    figures.push(Figure::truth(
-        "f64: links with a panic handler that does not exist",
-        true,
-    ));
-    for (rule, _) in INSTRUCTIONS {
-        let words = if small {
-            format!("{rule} short")
-        } else {
-            rule.to_owned()
-        };
-        let lines = Lines(tools.run(&firmware, &words)?);
-        figures.extend(of_rule("f64", rule, &lines, None)?);
-        figures.push(equal("f64", &words, &lines, &host)?);
-        if rule == "rk4" {
-            figures.push(bad_input("f64", &lines));
-        }
-    }
+    figures.extend(watch(tools)?);
+    figures.push(example(tools)?);
     Ok(figures)
 }
 
 /// The watch beside the filter: what it takes more than the filter alone.
-pub(super) fn watch(tools: &Tools) -> Result<Vec<Figure>, Error> {
+fn watch(tools: &Tools) -> Result<Vec<Figure>, Error> {
     let features = ["--features", "watch"];
-    let alone = Lines(tools.run(&tools.build(PACKAGE, &features)?.join(PROGRAM), "rk4")?);
-    let firmware = tools.build(PACKAGE, &features)?.join(WATCH_PROGRAM);
-    let lines = Lines(tools.run(&firmware, "")?);
+    let built = tools.build(PACKAGE, &features)?;
     let host = build_on_host(PACKAGE, &features)?.join(WATCH_PROGRAM);
+    let alone = Lines(tools.run(&built.join(PROGRAM), "rk4")?);
+    let firmware = built.join(WATCH_PROGRAM);
+    let lines = Lines(tools.run(&firmware, "")?);
     let effects = lines.number("effects")?;
-    let more = |watched: &str, filter: &str| -> Result<f64, Error> {
-        Ok(lines.number(watched)? - alone.number(filter)?)
-    };
-    let count = |what: &str, limit: f64, measured: f64| {
+    let mut figures = Vec::new();
+    for (what, watched, filter, limit) in OF_WATCH {
         let name = format!("f32: watch of {effects} effects alone: {what}");
-        Figure {
-            measured: format!("{measured:.0}"),
-            target: format!("<= {limit:.0}"),
-            ..Figure::within(&name, [0.0, limit], measured)
-        }
-    };
-    let on_host = Lines(output(&mut Command::new(host))?);
-    let (here, there) = (on_host.compared(), lines.compared());
-    let figures = [
-        count(
-            "instructions, mean",
-            12_000.0,
-            more("instructions mean", "instructions mean")?,
-        ),
-        count(
-            "instructions, worst step",
-            20_000.0,
-            more("instructions most", "instructions mean")?,
-        ),
-        count("RAM, bytes", 16_000.0, more("size watched", "size filter")?),
-        Figure::truth(
-            "f32: watch: all bits on the target are those of the host",
-            here == there && !here.is_empty(),
-        ),
-        soft_double(tools, &firmware, "f32: watch")?,
-    ];
-    Ok(figures
-        .map(|figure| figure.over(lines.steps(), "examples/data/three_days.csv"))
-        .into())
+        let more = lines.number(watched)? - alone.number(filter)?;
+        figures.push(Figure::at_most(&name, limit, more, "").over(lines.steps(), RECORD));
+    }
+    let name = "f32: watch: all bits on the target are those of the host";
+    figures.push(equal(name, "", &lines, &host)?);
+    figures.push(soft_double(tools, &firmware, "f32: watch")?);
+    Ok(figures)
 }
 
 /// The lines of numbers that the Rust filter prints on the host in single precision, without bad
@@ -104,20 +112,18 @@ pub(super) fn watch(tools: &Tools) -> Result<Vec<Figure>, Error> {
 pub(super) fn on_host() -> Result<Vec<String>, Error> {
     let host = build_on_host(PACKAGE, &[])?.join(PROGRAM);
     let lines = Lines(output(Command::new(host).arg("rk4"))?);
-    let numbers = lines.compared().into_iter();
-    Ok(numbers
-        .filter(|line| !line.starts_with("bad_input "))
-        .map(str::to_owned)
-        .collect())
+    let mut numbers = lines.compared();
+    numbers.retain(|line| !line.starts_with("bad_input "));
+    Ok(numbers.into_iter().map(str::to_owned).collect())
 }
 
 /// The firmware of `examples/controller`, which ends well only if its filter is healthy.
-pub(super) fn example(tools: &Tools) -> Result<Figure, Error> {
+fn example(tools: &Tools) -> Result<Figure, Error> {
     let firmware = tools.build("examples/controller", &[])?;
     let text = tools.run(&firmware.join("gyrocal-controller"), "")?;
     let name = "examples/controller: three days with a reset and a bad sample";
     let figure = Figure::truth(name, text.contains("all minutes done, filter healthy"));
-    Ok(figure.over(1, "examples/data/three_days.csv"))
+    Ok(figure.over(1, RECORD))
 }
 
 /// What a firmware printed.
@@ -149,57 +155,51 @@ impl Lines {
     }
 }
 
-fn of_rule(
-    number: &str,
-    rule: &str,
-    lines: &Lines,
-    limit: Option<f64>,
-) -> Result<Vec<Figure>, Error> {
-    let mean = lines.number("instructions mean")?;
-    let (least, most) = (
-        lines.number("instructions least")?,
-        lines.number("instructions most")?,
-    );
-    let name = format!("{number} {rule} step: instructions, mean");
-    let instructions = match limit {
-        Some(limit) => Figure {
-            measured: format!("{mean:.0}"),
-            target: format!("<= {limit:.0}"),
-            ..Figure::within(&name, [0.0, limit], mean)
-        },
-        None => Figure::note(&name, format!("{mean:.0}")),
+/// Instructions of a step, and their spread.
+fn of_rule(name: &str, lines: &Lines, limits: Option<[f64; 2]>) -> Result<[Figure; 2], Error> {
+    let [mean, least, most] =
+        ["mean", "least", "most"].map(|what| lines.number(&format!("instructions {what}")));
+    let (mean, spread) = (mean?, most? - least?);
+    let of = |place: usize, what: &str, measured: f64, unit: &str| {
+        let limit = limits.map(|limits| limits[place]);
+        let figure = limited(&format!("{name} step: {what}"), limit, measured, unit);
+        figure.over(lines.steps(), RECORD)
     };
-    let name = format!("{number} {rule} step: spread of instructions between steps");
-    let percent = 100.0 * (most - least) / mean;
-    let spread = match limit {
-        Some(_) => Figure::at_most(&name, 2.0, percent, "%"),
-        // Software for double precision takes as long as its operands need.
-        None => Figure::note(&name, format!("{percent:.2} %")),
-    };
-    let seeds = "examples/data/three_days.csv";
-    Ok([instructions, spread]
-        .map(|figure| figure.over(lines.steps(), seeds))
-        .into())
+    Ok([
+        of(0, "instructions, mean", mean, ""),
+        of(
+            1,
+            "spread of instructions between steps",
+            100.0 * spread / mean,
+            "%",
+        ),
+    ])
 }
 
-fn equal(number: &str, words: &str, lines: &Lines, host: &Path) -> Result<Figure, Error> {
-    let on_host = Lines(output(Command::new(host).args(words.split(' ')))?);
+/// A cost, with a limit or without.
+fn limited(name: &str, limit: Option<f64>, measured: f64, unit: &str) -> Figure {
+    let figure = Figure::at_most(name, limit.unwrap_or(f64::INFINITY), measured, unit);
+    match limit {
+        Some(_) => figure,
+        None => Figure::note(name, figure.measured),
+    }
+}
+
+fn equal(name: &str, words: &str, lines: &Lines, host: &Path) -> Result<Figure, Error> {
+    let on_host = Lines(output(Command::new(host).args(words.split_whitespace()))?);
     let (here, there) = (on_host.compared(), lines.compared());
-    let rule = words.split(' ').next().unwrap_or_default();
-    let name = format!("{number} {rule}: all bits on the target are those of the host");
-    let figure = Figure::truth(&name, here == there && there.len() > 19);
-    Ok(figure.over(lines.steps(), "examples/data/three_days.csv"))
+    let figure = Figure::truth(name, here == there && !there.is_empty());
+    Ok(figure.over(lines.steps(), RECORD))
 }
 
 fn bad_input(number: &str, lines: &Lines) -> Figure {
-    let answers: Vec<bool> = lines
+    let answers = lines
         .0
         .lines()
-        .filter(|line| line.starts_with("bad_input "))
-        .map(|line| line.ends_with(" 1"))
-        .collect();
-    let name = format!("{number}: bad input answered as documented, state unchanged");
+        .filter(|line| line.starts_with("bad_input "));
+    let answers: Vec<bool> = answers.map(|line| line.ends_with(" 1")).collect();
     let right = answers.iter().filter(|answer| **answer).count();
+    let name = format!("{number}: bad input answered as documented, state unchanged");
     Figure {
         target: format!("{0} of {0}", answers.len()),
         measured: format!("{right} of {}", answers.len()),
@@ -209,36 +209,13 @@ fn bad_input(number: &str, lines: &Lines) -> Figure {
 }
 
 fn memory(lines: &Lines) -> Result<Vec<Figure>, Error> {
-    let kilobytes = |name: &str, limit: f64, bytes: f64| {
-        let figure = Figure::within(name, [0.0, 1000.0 * limit], bytes);
-        Figure {
-            target: format!("<= {:.0} bytes", 1000.0 * limit),
-            measured: format!("{bytes:.0} bytes"),
-            ..figure
-        }
-    };
-    let stack_of_a_step = lines.number("stack step")?;
-    let start = lines.number("stack start")?;
-    let mut figures = vec![
-        kilobytes("f32: filter state", 2.4, lines.number("size filter")?),
-        kilobytes("f32 rk4: stack of a step", 1.3, stack_of_a_step),
-        kilobytes("f32: stack of construction", 1.5, start),
-        Figure::truth(
-            "f32: construction needs no more stack than a step",
-            start <= stack_of_a_step,
-        ),
-    ];
-    for call in ["update", "coast", "save", "restore"] {
-        let bytes = lines.number(&format!("stack {call}"))?;
-        figures.push(Figure::note(
-            &format!("f32 rk4: stack of {call}"),
-            format!("{bytes:.0} bytes"),
-        ));
+    let mut figures = Vec::new();
+    for (name, line, limit) in BYTES {
+        figures.push(limited(name, limit, lines.number(line)?, "bytes"));
     }
-    let saved = lines.number("size saved")?;
-    figures.push(Figure::note(
-        "f32: saved state",
-        format!("{saved:.0} bytes"),
+    figures.push(Figure::truth(
+        "f32: construction needs no more stack than a step",
+        lines.number(STACK_OF_CONSTRUCTION)? <= lines.number(STACK_OF_A_STEP)?,
     ));
     Ok(figures)
 }

@@ -4,12 +4,13 @@
 use gyrocal::{
     Drift, FactorisedPlatformFilter, FilterSettings, InitialAttitude, Platform, Precision, Site,
 };
-use gyrocal_statistics::mean_square_band;
+use gyrocal_evaluation::Statistic;
 use gyrocal_truth::{Population, Simulation, simulate};
-use rayon::prelude::*;
 
 use crate::error::Error;
 use crate::figure::Figure;
+use crate::harness::sources::{Sources, of};
+use crate::harness::{self, Context, Row};
 
 const DAY_S: f64 = 86_400.0;
 const DIFFERENCE_SEED: u64 = 20_261_122;
@@ -19,9 +20,11 @@ const LARGEST: f64 = 0.3;
 /// Days after which both precisions are compared.
 const DAYS: [f64; 3] = [1.0, 3.0, 5.0];
 
-pub(super) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
-    let mut figures = differences(if small { 4 } else { 40 })?;
-    figures.extend(consistency(if small { 60 } else { 500 })?);
+const SOURCES: Sources = of(&["", "crates/truth"], &[file!()]);
+
+pub(super) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
+    let mut figures = differences(context)?;
+    figures.extend(consistency(context)?);
     Ok(figures)
 }
 
@@ -100,42 +103,39 @@ fn estimates<T: Precision>(
 }
 
 /// The largest difference of a coefficient in its sigma after some days.
-fn differences(records: u64) -> Result<Vec<Figure>, Error> {
-    let population = Population {
-        duration_days: [5.0, 5.0],
+fn differences(context: &Context) -> Result<Vec<Figure>, Error> {
+    let records = Population {
+        duration_days: [DAYS[2]; 2],
         ..Population::new(DIFFERENCE_SEED)
     };
     let times_s = DAYS.map(|days| days * DAY_S);
-    let worst = (0..records)
-        .into_par_iter()
-        .map(|number| {
-            let simulation = simulate(&population.scenario(number))?;
-            let single = estimates::<f32>(&simulation, 1.0, &times_s)?;
-            let double = estimates::<f64>(&simulation, 1.0, &times_s)?;
-            Ok(single.iter().zip(&double).map(apart).collect())
+    let job = |number| {
+        let simulation = simulate(&records.scenario(number))?;
+        let single = estimates::<f32>(&simulation, 1.0, &times_s)?;
+        let double = estimates::<f64>(&simulation, 1.0, &times_s)?;
+        Ok(single.iter().zip(&double).map(apart).collect())
+    };
+    let population = harness::Population::new("f32 against f64", [0, 40, 4], SOURCES, job);
+    let rows = core::array::from_fn::<_, 3, _>(|place| {
+        let days = DAYS[place];
+        let name =
+            format!("f32 against f64 after {days} days: largest difference of a coefficient");
+        Row::new(name, move |all: &[Vec<f64>]| {
+            let of_day = all
+                .iter()
+                .map(|record| record.get(place).copied().unwrap_or(f64::NAN));
+            // NaN must not pass for small.
+            let largest = of_day.fold(
+                0.0,
+                |largest: f64, value| {
+                    if value <= largest { largest } else { value }
+                },
+            );
+            Statistic::Value(largest, all.len() as u64)
         })
-        .collect::<Result<Vec<Vec<f64>>, Error>>()?;
-    let figures = DAYS.iter().enumerate().map(|(index, days)| {
-        let of_day = worst.iter().filter_map(|record| record.get(index));
-        // NaN must not pass for small.
-        let largest = of_day.fold(
-            0.0,
-            |largest: f64, value| {
-                if *value <= largest { largest } else { *value }
-            },
-        );
-        Figure::at_most(
-            &format!("f32 against f64 after {days} days: largest difference of a coefficient"),
-            0.1,
-            largest,
-            "sigma",
-        )
-        .over(
-            worst.len(),
-            format!("population {DIFFERENCE_SEED}, 0 to {}", records - 1),
-        )
+        .at_most(0.1, "a tenth of a sigma more is half a percent of it")
     });
-    Ok(figures.collect())
+    context.measure(&population, &rows)
 }
 
 fn apart((single, double): (&Estimate, &Estimate)) -> f64 {
@@ -148,9 +148,9 @@ fn apart((single, double): (&Estimate, &Estimate)) -> f64 {
 /// Mean NEES of both precisions on the same records of three days. Coefficients are drawn from the
 /// prior, which is narrow enough for an extended Kalman filter: from a wide one its linearisation
 /// costs more than any rounding.
-fn consistency(records: u64) -> Result<Vec<Figure>, Error> {
-    let population = Population {
-        duration_days: [DAYS[1], DAYS[1]],
+fn consistency(context: &Context) -> Result<Vec<Figure>, Error> {
+    let records = Population {
+        duration_days: [DAYS[1]; 2],
         largest_bias_deg_per_h: LARGEST,
         largest_g_deg_per_h_per_g: LARGEST,
         largest_gg_deg_per_h_per_g2: LARGEST,
@@ -159,33 +159,32 @@ fn consistency(records: u64) -> Result<Vec<Figure>, Error> {
     // Of a uniform distribution.
     let sigma = LARGEST / 3.0_f64.sqrt();
     let end_s = [DAYS[1] * DAY_S];
-    let nees = (0..records)
-        .into_par_iter()
-        .map(|number| {
-            let simulation = simulate(&population.scenario(number))?;
-            let truth = simulation.truth.coefficients.named();
-            let truth = truth.map(|(_, value, _)| value);
-            let of = |found: Vec<Estimate>| match found.as_slice() {
-                [estimate] => Ok(estimate.nees(&truth)),
-                _ => Err(Error::from("a record without a last row")),
-            };
-            let single = of(estimates::<f32>(&simulation, sigma, &end_s)?)?;
-            Ok([single, of(estimates::<f64>(&simulation, sigma, &end_s)?)?])
+    let job = |number| {
+        let simulation = simulate(&records.scenario(number))?;
+        let truth = simulation
+            .truth
+            .coefficients
+            .named()
+            .map(|(_, value, _)| value);
+        let of = |found: Vec<Estimate>| match found.as_slice() {
+            [estimate] => Ok(estimate.nees(&truth)),
+            _ => Err(Error::from("a record without a last row")),
+        };
+        let single = of(estimates::<f32>(&simulation, sigma, &end_s)?)?;
+        Ok([single, of(estimates::<f64>(&simulation, sigma, &end_s)?)?])
+    };
+    let population = harness::Population::new("NEES of f32 and f64", [0, 500, 40], SOURCES, job);
+    let rows = [
+        Row::mean("f32: mean NEES (9 expected)", |pair: &[f64; 2]| {
+            Some(pair[0])
         })
-        .collect::<Result<Vec<[f64; 2]>, Error>>()?;
-    let runs = nees.len() as f64;
-    let mean = |index: usize| nees.iter().map(|pair| pair[index]).sum::<f64>() / runs;
-    let band = mean_square_band(9.0 * runs, runs, 0.999);
-    let seeds = format!("population {CONSISTENCY_SEED}, 0 to {}", records - 1);
-    let mut single = Figure::within("f32: mean NEES (9 expected)", band, mean(0));
-    single.target = format!("{:.2} to {:.2}", band[0], band[1]);
-    Ok([
-        single,
-        Figure::note(
-            "f64 on the same records: mean NEES",
-            format!("{:.3}", mean(1)),
+        .between(
+            [8.7, 9.3],
+            "nine coefficients; the uniform prior and what is not linear leave a few percent",
         ),
-    ]
-    .map(|figure| figure.over(nees.len(), seeds.clone()))
-    .into())
+        Row::mean("f64 on the same records: mean NEES", |pair: &[f64; 2]| {
+            Some(pair[1])
+        }),
+    ];
+    context.measure(&population, &rows)
 }

@@ -1,8 +1,9 @@
 //! Cost of a clean build against that of an earlier commit, and of tests and continuous integration.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use gyrocal_testkit::{cargo, run};
 use serde::Deserialize;
@@ -28,47 +29,42 @@ const SECONDS: &str = "target/ci/seconds.toml";
 /// Number of packages whose share of a build is printed.
 const LISTED: usize = 8;
 
-pub(crate) fn figures(root: &Path) -> Result<Vec<Figure>, Error> {
-    let mut figures = ratio(root)?;
-    figures.extend(sections(root)?);
-    Ok(figures)
+pub(super) fn figures(root: &Path) -> Result<Vec<Figure>, Error> {
+    Ok([ratio(root)?, sections(root)?].concat())
 }
 
 /// Clean release builds of the default members of both commits, one after the other.
 fn ratio(root: &Path) -> Result<Vec<Figure>, Error> {
+    let name =
+        format!("clean release build of the default members over that of the commit {EARLIER}");
     let scratch = tempfile::tempdir()?;
     let mut times = Vec::new();
-    let name = "clean release build of the default members over that of the commit ";
     for commit in [EARLIER, "HEAD"] {
         let tree = scratch.path().join(commit);
-        let clone = Command::new("git")
+        let mut clone = Command::new("git");
+        clone
             .args(["clone", "--quiet", "--no-checkout"])
-            .args([root, &tree])
-            .status()?;
-        let checkout = Command::new("git")
+            .args([root, &tree]);
+        let mut checkout = Command::new("git");
+        checkout
             .arg("-C")
             .arg(&tree)
-            .args(["checkout", "--quiet", commit])
-            .status()?;
-        if !clone.success() || !checkout.success() {
+            .args(["checkout", "--quiet", commit]);
+        if !clone.status()?.success() || !checkout.status()?.success() {
             let why = format!("not measured: the history holds no commit {commit}");
-            return Ok(vec![Figure::note(&format!("{name}{EARLIER}"), why)]);
+            return Ok(vec![Figure::note(&name, why)]);
         }
         run(cargo(&tree, &tree.join("target")).args(["fetch"])).succeeded();
         let begin = Instant::now();
         run(cargo(&tree, &tree.join("target")).args(["build", "--release", "--timings"]))
             .succeeded();
-        times.push(begin.elapsed());
+        times.push(begin.elapsed().as_secs_f64());
     }
-    let seconds = |time: &Duration| time.as_secs_f64();
-    let ratio = seconds(&times[1]) / seconds(&times[0]);
-    let mut figure = Figure::within(&format!("{name}{EARLIER}"), [0.0, LARGEST_RATIO], ratio);
-    figure.target = format!("<= {LARGEST_RATIO}");
-    figure.measured = format!(
-        "{ratio:.2} ({:.0} s over {:.0} s)",
-        seconds(&times[1]),
-        seconds(&times[0])
-    );
+    let ratio = times[1] / times[0];
+    let figure = Figure {
+        measured: format!("{ratio:.2} ({:.0} s over {:.0} s)", times[1], times[0]),
+        ..Figure::at_most(&name, LARGEST_RATIO, ratio, "")
+    };
     let split = split(&scratch.path().join("HEAD/target/cargo-timings"))?;
     Ok(vec![
         figure.over(1, "this machine"),
@@ -92,13 +88,11 @@ fn split(folder: &Path) -> Result<String, Error> {
         .map(|(list, _)| serde_json::from_str(&format!("{list}]")))
         .transpose()?
         .unwrap_or_default();
-    let mut packages: Vec<(String, f64)> = Vec::new();
+    let mut packages = BTreeMap::new();
     for unit in units {
-        match packages.iter_mut().find(|(name, _)| *name == unit.name) {
-            Some((_, total)) => *total += unit.duration,
-            None => packages.push((unit.name, unit.duration)),
-        }
+        *packages.entry(unit.name).or_insert(0.0) += unit.duration;
     }
+    let mut packages: Vec<(String, f64)> = packages.into_iter().collect();
     packages.sort_by(|a, b| b.1.total_cmp(&a.1));
     let listed = packages.iter().take(LISTED);
     let listed: Vec<String> = listed.map(|(name, s)| format!("{name} {s:.0}")).collect();
@@ -133,27 +127,23 @@ fn sections(root: &Path) -> Result<Vec<Figure>, Error> {
     let run: Run = toml::from_str(&text)?;
     let seeds = format!("run of commit {}", run.commit);
     let units = run.gate_s / run.unit_s;
-    let mut gate = Figure::within(&gate, [0.0, GATE], units / run.earlier_units);
-    gate.target = format!("<= {GATE}");
-    gate.measured = format!("{} ({units:.1} units of {} s)", gate.measured, run.unit_s);
+    let gate = Figure::at_most(&gate, GATE, units / run.earlier_units, "");
     let slow = format!("slow sections together ({})", run.slow);
-    let compiled = Figure::within(
-        "compilations of the tree by the gate",
-        [0.0, COMPILATIONS],
-        run.compiled_gate,
-    );
-    let compiled = Figure {
-        target: format!("<= {COMPILATIONS}"),
-        measured: format!(
-            "{}, with slow sections {}",
-            run.compiled_gate, run.compiled_all
-        ),
-        ..compiled
-    };
+    let compiled = "compilations of the tree by the gate";
+    let compiled = Figure::at_most(compiled, COMPILATIONS, run.compiled_gate, "");
     let all = [
-        gate,
+        Figure {
+            measured: format!("{} ({units:.1} units of {} s)", gate.measured, run.unit_s),
+            ..gate
+        },
         Figure::at_most(&slow, SLOW_MIN, run.slow_s / 60.0, "min"),
-        compiled,
+        Figure {
+            measured: format!(
+                "{}, with slow sections {}",
+                run.compiled_gate, run.compiled_all
+            ),
+            ..compiled
+        },
     ];
     Ok(all.map(|figure| figure.over(1, seeds.as_str())).into())
 }

@@ -52,12 +52,11 @@ pub(super) fn figures(root: &Path) -> Result<[Figure; 3], Error> {
     let cycles = "cycles between top-level modules of a crate";
     let files = format!("files above {FILE_LINES} lines");
     let rows = [(literals, compared), (cycles, circular), (&files, long)];
-    Ok(rows.map(|(name, places)| Figure {
-        target: "0".to_owned(),
-        measured: format!("{} {}", places.len(), places.join("; "))
-            .trim_end()
-            .to_owned(),
-        ..Figure::within(name, [0.0, 0.0], places.len() as f64).over(1, "this tree")
+    Ok(rows.map(|(name, places)| {
+        let count = Figure::at_most(name, 0.0, places.len() as f64, "");
+        let measured = format!("{} {}", count.measured, places.join("; "));
+        let measured = measured.trim_end().to_owned();
+        Figure { measured, ..count }.over(1, "this tree")
     }))
 }
 

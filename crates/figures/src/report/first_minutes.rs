@@ -16,10 +16,8 @@ const LIMIT_MIN: f64 = 10.0;
 /// Place that the page clones from, for which the committed state of this tree stands.
 const REPOSITORY: &str = env!("CARGO_PKG_REPOSITORY");
 
-/// Blocks of a page whose commands a reader runs.
-const SHELL: &str = "```sh\n";
-const CONSOLE: &str = "```console\n";
-const CLOSE: &str = "```";
+/// Begin and end of a block of a page; a reader runs the commands of those of a shell.
+const FENCE: &str = "```";
 
 /// Runs all commands of docs/first-ten-minutes.md in an empty folder, one after the other, and measures
 /// their time. Packages of others are fetched where the machine does not have them.
@@ -60,25 +58,18 @@ fn run(script: &str, folder: &Path) -> Result<(), Error> {
 /// The commands of a page, one a line, as a reader would type them.
 fn script(page: &str) -> String {
     let mut script = String::new();
-    let mut rest = page;
-    while let Some((at, open)) = [SHELL, CONSOLE]
-        .into_iter()
-        .filter_map(|open| Some((rest.find(open)?, open)))
-        .min()
-    {
-        let block = &rest[at + open.len()..];
-        let (block, after) = block.split_once(CLOSE).unwrap_or((block, ""));
-        if open == SHELL {
-            script.push_str(&block.replace("\\\n", " "));
-        } else {
-            for line in block.replace("\\\n", " ").lines() {
-                if let Some(command) = line.strip_prefix("$ ") {
-                    script.push_str(command);
-                    script.push('\n');
-                }
+    // Blocks and what is between them, in turns.
+    for block in page.split(FENCE).skip(1).step_by(2) {
+        let (kind, block) = block.split_once('\n').unwrap_or_default();
+        let block = block.replace("\\\n", " ");
+        match kind {
+            "sh" => script.push_str(&block),
+            "console" => {
+                let commands = block.lines().filter_map(|line| line.strip_prefix("$ "));
+                script.extend(commands.flat_map(|command| [command, "\n"]));
             }
+            _ => {}
         }
-        rest = after;
     }
     script
 }

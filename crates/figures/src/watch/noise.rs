@@ -1,5 +1,4 @@
-use chacha20::ChaCha12Rng;
-use chacha20::rand_core::{Rng, SeedableRng};
+use gyrocal_statistics::deviates::Draw;
 
 /// True noise of a platform, whose declared one is white and normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,68 +16,53 @@ pub(super) enum Noise {
     Student4Both,
 }
 
-/// Six noises a sample, and three steps of walks when they are asked for.
+/// Six noises a sample, and normal deviates when they are asked for.
 #[derive(Debug)]
 pub(super) struct Source {
-    /// ChaCha12: see [`gyrocal_statistics::deviates`].
-    generator: ChaCha12Rng,
+    draw: Draw,
     noise: Noise,
     before: [f64; 6],
 }
 
 impl Source {
-    pub(super) fn new(seed: u64, stream: u64, noise: Noise) -> Self {
-        let mut generator = ChaCha12Rng::seed_from_u64(seed);
-        generator.set_stream(stream);
+    pub(super) fn new(draw: Draw, noise: Noise) -> Self {
+        let before = [0.0; 6];
         Self {
-            generator,
+            draw,
             noise,
-            before: [0.0; 6],
+            before,
         }
-    }
-
-    fn uniform(&mut self) -> f64 {
-        const SPACING: f64 = 1.0 / (1_u64 << 52) as f64;
-        ((self.generator.next_u64() >> 12) as f64 + 0.5) * SPACING
-    }
-
-    fn two_normals(&mut self) -> [f64; 2] {
-        let radius = (-2.0 * self.uniform().ln()).sqrt();
-        let (sine, cosine) = (core::f64::consts::TAU * self.uniform()).sin_cos();
-        [radius * cosine, radius * sine]
     }
 
     pub(super) fn normals<const N: usize>(&mut self) -> [f64; N] {
-        let mut normals = [0.0; N];
-        for pair in normals.chunks_mut(2) {
-            let two = self.two_normals();
-            pair.copy_from_slice(&two[..pair.len()]);
-        }
-        normals
+        core::array::from_fn(|_| self.draw.normal())
     }
 
     /// Noise of three gyros and three accelerometers, in units of the declared sigma.
     pub(super) fn sample(&mut self) -> [f64; 6] {
-        let mut normals: [f64; 6] = self.normals();
+        let normals = self.normals();
         match self.noise {
-            Noise::Declared => {}
-            Noise::Larger(factor) => normals = normals.map(|normal| factor * normal),
+            Noise::Declared => normals,
+            Noise::Larger(factor) => normals.map(|normal| factor * normal),
             Noise::Correlated(coefficient) => {
                 let fresh = (1.0 - coefficient * coefficient).sqrt();
-                for (normal, before) in normals.iter_mut().zip(&mut self.before) {
-                    *normal = coefficient * *before + fresh * *normal;
-                    *before = *normal;
-                }
+                self.before = core::array::from_fn(|place| {
+                    coefficient * self.before[place] + fresh * normals[place]
+                });
+                self.before
             }
-            Noise::Student4 | Noise::Student4Both => {
-                let first = if self.noise == Noise::Student4 { 3 } else { 0 };
-                for normal in &mut normals[first..] {
-                    // χ² with four degrees of freedom; the variance of the quotient is 2.
-                    let chi_square = -2.0 * (self.uniform() * self.uniform()).ln();
-                    *normal *= (2.0 / chi_square).sqrt();
+            Noise::Student4 | Noise::Student4Both => core::array::from_fn(|place| {
+                if place < 3 && self.noise == Noise::Student4 {
+                    return normals[place];
                 }
-            }
+                // χ² with four degrees of freedom; the variance of the quotient is 2.
+                let chi_square: f64 = self
+                    .normals::<4>()
+                    .map(|normal| normal * normal)
+                    .iter()
+                    .sum();
+                normals[place] * (2.0 / chi_square).sqrt()
+            }),
         }
-        normals
     }
 }

@@ -1,206 +1,165 @@
 //! Platforms without an effect: false alarms, and alarms of walks that are not declared.
 
-use gyrocal::ControllerError;
 use gyrocal::watch::EFFECTS_BY_DEFAULT;
+use gyrocal_evaluation::Statistic;
 use gyrocal_statistics::Proportion;
 use serde::{Deserialize, Serialize};
 
 use super::lane::Lane;
 use super::noise::Noise;
 use super::platform::Platform;
-use super::{DAY, LANES};
+use super::{DAY, lanes, platforms};
 use crate::error::Error;
 use crate::figure::Figure;
-use crate::resumable;
-use crate::truth::Extent;
+use crate::harness::{Context, Population, Row};
 
 /// Populations that no constant was tuned on.
 const SOUND: u64 = 20_261_231;
 const WALKS: u64 = 20_261_235;
 
-/// Realisations where the noise is not as declared.
-const OTHER_LANES: usize = 10;
-
 /// Steps that an onset of jumps lives.
 const JUMP_LIFE: usize = 48;
-/// Days of a year.
+/// Days of a year, and the share of it that the small version takes.
 const YEAR_DAYS: f64 = 365.25;
+const SHORT: f64 = 0.05;
 
-/// Alarms among platforms without an effect.
-#[derive(Serialize, Deserialize)]
-struct Sound {
-    /// Platforms, each over the same time.
-    platforms: usize,
-    /// Sizes of the outliers of gyros, sigma, that alarms followed within the life of a jump's onset;
-    /// one for each such alarm.
-    outliers: Vec<f64>,
-    /// Days until each alarm, and whether its set holds a random walk of a gyro.
-    days: Vec<f64>,
-    walks: Vec<bool>,
+/// The walk that is declared and there, the true noise in words, largest share of alarms, and why.
+const CLEAN: [(f64, Noise, &str, f64, &str); 7] = [
+    (0.0, Noise::Declared, "as declared", 0.02, DECLARED),
+    (1e-5, Noise::Declared, "as declared", 0.02, DECLARED),
+    (1e-4, Noise::Declared, "as declared", 0.02, DECLARED),
+    (1e-5, Noise::Larger(1.1), "10 % larger", 0.03, MISDECLARED),
+    (1e-5, Noise::Larger(0.9), "10 % smaller", 0.03, MISDECLARED),
+    (1e-5, Noise::Correlated(0.1), "AR(1) 0.1", 0.03, MISDECLARED),
+    (
+        1e-5,
+        Noise::Student4,
+        "Student t, 4 degrees, of accelerometers",
+        0.03,
+        MISDECLARED,
+    ),
+];
+const DECLARED: &str = "the promise is 1 % a year: six of 600 are within the bound";
+const MISDECLARED: &str = "the promise is of declared noise; here it may be missed by half: ten of 600 are within the bound";
+
+/// Walks that are declared and that are there, deg/h/√h.
+const UNDECLARED: [[f64; 2]; 4] = [[0.0, 1e-5], [0.0, 1e-4], [5e-6, 1e-5], [5e-5, 1e-4]];
+
+/// One realisation of a platform over a year, until its alarm.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Year {
+    /// Days until the alarm.
+    days: Option<f64>,
+    /// Whether the set at the alarm holds what a random walk of a gyro is.
+    walks: bool,
+    /// The outlier of a gyro that the alarm followed within the life of a jump's onset, sigma.
+    outlier: Option<f64>,
 }
 
-/// A noise of clean platforms: words, the true one, realisations of each platform, largest share of
-/// alarms.
-type Row = (&'static str, Noise, usize, f64);
+/// Platforms of a population over a year; filter and watch expect the walk that is declared.
+fn years(
+    context: &Context,
+    cell: &str,
+    [population, small]: [u64; 2],
+    noise: Noise,
+    [declared, walk]: [f64; 2],
+) -> Population<'static, Vec<Year>> {
+    let lanes = lanes(context);
+    let years = if context.is_small() { SHORT } else { 1.0 };
+    let steps = (years * YEAR_DAYS * DAY as f64) as usize;
+    platforms(cell, [60, small], move |number| {
+        let platform = [population, number];
+        let of = |stream| Lane::noisy(platform, stream, noise, walk);
+        let mut all: Vec<Lane> = (0..lanes).map(of).collect();
+        Platform::new(platform, steps, declared)?.run(&mut all)?;
+        Ok(all.iter().map(Year::of).collect())
+    })
+}
 
-/// Platforms without an effect, by the walk that is declared and there.
-pub(super) fn false_alarms(extent: Extent) -> Result<Vec<Figure>, Error> {
-    let small = extent.small;
-    let (lanes, others, years) = if small {
-        (4, 4, 0.1)
-    } else {
-        (LANES, OTHER_LANES, 1.0)
-    };
-    let declared: Row = ("as declared", Noise::Declared, lanes, 0.02);
-    let row = |name, noise| (name, noise, others, 0.03);
-    let misdeclared = [
-        row("10 % larger", Noise::Larger(1.1)),
-        row("10 % smaller", Noise::Larger(0.9)),
-        row("AR(1) 0.1", Noise::Correlated(0.1)),
-        row("Student t, 4 degrees, of accelerometers", Noise::Student4),
-    ];
-    let mut figures = Vec::new();
-    for (walk, rows) in [
-        (0.0, &[declared][..]),
-        (1e-5, &[declared]),
-        (1e-4, &[declared]),
-        (1e-5, &misdeclared),
-    ] {
-        for row in rows {
-            let (share, _, seeds) = clean(extent, walk, row, years)?;
-            let (noise, _, _, limit) = *row;
-            let bound = share.upper_bound(0.95);
-            let name = format!(
-                "alarms in a clean platform-year at 1 % a year, walk {walk:.0e}, noise {noise}"
-            );
-            let mut figure = Figure::within(&name, [0.0, limit], bound).of_share(share);
-            figure.target = format!("<= {limit} (upper 95 % bound)");
-            figure.measured = format!("{:.4}, bound {bound:.4}", share.share());
-            if small {
-                figure = figure.judged(share.at_most(limit));
-            }
-            figures.push(figure.over(share.trials as usize, seeds));
+impl Year {
+    fn of(lane: &Lane) -> Self {
+        let (alarm, _) = lane.alarms();
+        let row = alarm.map(|alarm| alarm.row);
+        let set = alarm.map_or(&[][..], |alarm| &alarm.set);
+        let effects = set
+            .iter()
+            .filter_map(|index| EFFECTS_BY_DEFAULT.get(*index));
+        let outlier = lane.outlier.zip(row);
+        let outlier = outlier.filter(|((outlier, _), row)| row - outlier <= JUMP_LIFE);
+        Self {
+            days: row.map(|row| row as f64 / DAY as f64),
+            walks: effects
+                .clone()
+                .any(|effect| effect.walking_gyro().is_some()),
+            outlier: outlier.map(|((_, size), _)| size),
         }
     }
-    // Outliers of gyros turn the platform: alarms are true.
-    let row = row("Student t, 4 degrees, of all sensors", Noise::Student4Both);
-    let (share, outliers, seeds) = clean(extent, 1e-5, &row, years)?;
-    let name = format!("alarms in a platform-year, walk 1e-5, noise {}", row.0);
-    let measured = format!("{:.4}", share.share());
-    figures.push(Figure::note(&name, measured).over(share.trials as usize, seeds.as_str()));
-    let turned = Proportion {
-        hits: outliers.len() as u64,
-        trials: share.hits,
-    };
-    let name = "of these alarms: a gyro was 30 sigma off, which turned the platform, in the 48 steps before";
-    let figure = if turned.trials == 0 {
-        Figure::note(name, "no alarm".to_owned())
-    } else {
-        Figure::within(name, [0.9, f64::INFINITY], turned.share()).of_share(turned)
-    };
-    figures.push(figure.over(turned.trials as usize, seeds));
-    Ok(figures)
 }
 
-/// Walks that are not declared, or half: the time to an alarm whose set holds the walk.
-pub(super) fn undeclared_walks(extent: Extent) -> Result<Vec<Figure>, Error> {
-    let lanes = if extent.small { 4 } else { OTHER_LANES };
-    let years = if extent.small { 0.1 } else { 1.0 };
+type Years = Vec<Year>;
+
+pub(super) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
+    let alarms = |all: &[Years]| Proportion::of(all.iter().flatten().map(|one| one.days.is_some()));
     let mut figures = Vec::new();
-    for (declared, walk) in [(0.0, 1e-5), (0.0, 1e-4), (5e-6, 1e-5), (5e-5, 1e-4)] {
-        let seeds = 0..extent.records(40, 2);
+    for (walk, noise, words, limit, reason) in CLEAN {
+        let cell = format!("sound {walk:e} {words}");
+        let population = years(context, &cell, [SOUND, 2], noise, [walk; 2]);
+        let name = format!(
+            "alarms in a clean platform-year at 1 % a year, walk {walk:.0e}, noise {words}"
+        );
+        let row = Row::new(name, |all: &[Years]| Statistic::Bound(alarms(all)));
+        figures.extend(context.measure(&population, &[row.at_most(limit, reason)])?);
+    }
+    // Outliers of gyros turn the platform: alarms are true.
+    let words = "Student t, 4 degrees, of all sensors";
+    let cell = format!("sound 1e-5 {words}");
+    let population = years(context, &cell, [SOUND, 0], Noise::Student4Both, [1e-5; 2]);
+    let turned = |all: &Years| {
+        let alarmed = all.iter().filter(|one| one.days.is_some());
+        alarmed.map(|one| one.outlier.is_some()).collect::<Vec<_>>()
+    };
+    let rows = [
+        Row::new(format!("alarms in a platform-year, walk 1e-5, noise {words}"), |all: &[Years]| {
+            Statistic::Share(alarms(all))
+        }),
+        Row::each(
+            "of these alarms: a gyro was 30 sigma off, which turned the platform, in the 48 steps before",
+            turned,
+        )
+        .at_least(0.9, "outliers of 20 to 30 sigma turn it too, and some by chance go together"),
+    ];
+    figures.extend(context.measure(&population, &rows)?);
+    for [declared, walk] in UNDECLARED {
         let cell = format!("undeclared {declared:e} {walk:e}");
-        let campaign = resumable::campaign("watch", &cell, seeds.clone(), extent.small)?;
-        let noise = (Noise::Declared, walk);
-        let job = |number| sound(WALKS, number, years, declared, noise, lanes);
-        let outcome = campaign.run(job, |_| ())?;
-        let all: Vec<&Sound> = outcome.successes().map(|(_, sound)| sound).collect();
-        let platforms: usize = all.iter().map(|sound| sound.platforms).sum();
-        let alarms: usize = all.iter().map(|sound| sound.days.len()).sum();
-        let mut days: Vec<f64> = all
-            .iter()
-            .flat_map(|sound| sound.days.iter().zip(&sound.walks))
-            .filter_map(|(days, walks)| walks.then_some(*days))
-            .collect();
-        days.sort_by(f64::total_cmp);
-        let median = days.get(platforms / 2).map_or_else(
-            || "no median within the time".to_owned(),
-            |days| format!("median {days:.1} days"),
+        let population = years(
+            context,
+            &cell,
+            [WALKS, 0],
+            Noise::Declared,
+            [declared, walk],
         );
         let name = format!(
             "walk {walk:.0e}, declared {declared:.0e}: delay to an alarm whose set holds a walk"
         );
-        let measured = format!(
-            "{median}; {} of {platforms} within {years} years, {} other alarms",
-            days.len(),
-            alarms - days.len()
-        );
-        let seeds = format!("{WALKS}, {seeds:?}");
-        figures.push(Figure::note(&name, measured).over(platforms, seeds));
+        figures.extend(context.measure(&population, &[Row::words(name, told)])?);
     }
     Ok(figures)
 }
 
-/// Clean platforms with one noise: those with an alarm, outliers that alarms followed, and seeds.
-fn clean(
-    extent: Extent,
-    walk: f64,
-    row: &Row,
-    years: f64,
-) -> Result<(Proportion, Vec<f64>, String), Error> {
-    let (name, noise, lanes, _) = *row;
-    let seeds = 0..extent.records(40, 2);
-    let cell = format!("sound {walk:e} {name}");
-    let campaign = resumable::campaign("watch", &cell, seeds.clone(), extent.small)?;
-    let job = |number| sound(SOUND, number, years, walk, (noise, walk), lanes);
-    let outcome = campaign.run(job, |_| ())?;
-    let all = || outcome.successes().map(|(_, sound): (_, &Sound)| sound);
-    let share = Proportion {
-        hits: all().map(|sound| sound.days.len() as u64).sum(),
-        trials: all().map(|sound| sound.platforms as u64).sum(),
-    };
-    let outliers = all().flat_map(|sound| sound.outliers.clone()).collect();
-    Ok((share, outliers, format!("{SOUND}, {seeds:?}")))
-}
-
-/// `lanes` platforms of one number of the population over `years`; `declared` is the walk that filter and
-/// watch expect, and the noise comes with the walk that there is, deg/h/√h.
-fn sound(
-    population: u64,
-    number: u64,
-    years: f64,
-    declared: f64,
-    (noise, walk): (Noise, f64),
-    lanes: usize,
-) -> Result<Sound, ControllerError> {
-    let steps = (years * YEAR_DAYS * DAY as f64) as usize;
-    let mut all: Vec<Lane> = (0..lanes)
-        .map(|stream| Lane::noisy([population, number], stream, noise, walk))
-        .collect();
-    Platform::new(population, number, steps, declared)?.run(&mut all, |_, lanes| {
-        lanes.iter().all(|lane| lane.alarm.is_some())
-    })?;
-    let alarmed = all.iter().filter(|lane| lane.alarm.is_some());
-    let days = all.iter().filter_map(|lane| lane.alarm);
-    Ok(Sound {
-        platforms: lanes,
-        outliers: all.iter().filter_map(followed).collect(),
-        days: days.map(|(row, _)| row as f64 / DAY as f64).collect(),
-        walks: alarmed.map(may_walk).collect(),
-    })
-}
-
-/// The outlier of a gyro that an alarm followed, sigma.
-fn followed(lane: &Lane) -> Option<f64> {
-    let ((alarm, _), (row, size)) = (lane.alarm?, lane.outlier?);
-    (row <= alarm && alarm - row <= JUMP_LIFE).then_some(size)
-}
-
-/// Whether the alarm may be one of a walk that is larger than declared.
-fn may_walk(lane: &Lane) -> bool {
-    let mut effects = lane
-        .set
-        .iter()
-        .filter_map(|index| EFFECTS_BY_DEFAULT.get(*index));
-    effects.any(|effect| effect.walking_gyro().is_some())
+/// Median delay to an alarm whose set holds a walk, and numbers of such alarms and of others.
+fn told(all: &[Years]) -> String {
+    let all: Vec<&Year> = all.iter().flatten().collect();
+    let of_walks = all.iter().filter(|one| one.walks);
+    let mut days: Vec<f64> = of_walks.filter_map(|one| one.days).collect();
+    days.sort_by(f64::total_cmp);
+    let median = days.get(all.len() / 2).map_or_else(
+        || "no median within a year".to_owned(),
+        |days| format!("median {days:.1} days"),
+    );
+    let alarms = all.iter().filter(|one| one.days.is_some()).count();
+    let (told, others) = (days.len(), alarms - days.len());
+    format!(
+        "{median}; {told} of {} within a year, {others} other alarms",
+        all.len()
+    )
 }
