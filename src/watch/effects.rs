@@ -118,7 +118,7 @@ impl WatchedEffect {
 
     /// Information on its size that a day of samples of a settled filter gives, by the declared noise;
     /// a scale for the sizes that are looked for. The factors are medians over attitudes, measured by
-    /// `cargo figures watch`: a factor of two in them costs little.
+    /// `cargo figures embedded --part watch`: a factor of two in them costs little.
     #[must_use]
     pub fn information_of_a_day<T: Precision>(&self, settings: &FilterSettings<T>) -> T {
         let day = T::from_f64(86_400.0);

@@ -12,7 +12,6 @@ mod tests;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 use gyrocal_testkit::workspace;
 use rayon::prelude::*;
@@ -66,40 +65,40 @@ pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
     cases.retain(|case| (names.is_empty() || names.contains(&case.name)) && !(small && case.slow));
     let mut moves = Moves::read(&folder)?;
     let compared = cases.par_iter().map(|case| {
-        let began = Instant::now();
         let of_case = |error| format!("{}: {error}", case.name);
         let now = results::of(case).map_err(of_case)?;
         let before = results::renewed(&folder, case, &now, write).map_err(of_case)?;
-        Ok((compared(&before, &now), began.elapsed().as_secs_f64()))
+        Ok(compared(&before, &now))
     });
     let compared: Vec<_> = compared.collect::<Result<_, Error>>()?;
     let (mut values, mut differ, mut may_differ) = (0, 0, 0);
-    let mut seconds = Vec::new();
-    for (case, ((count, differences), time_s)) in cases.iter().zip(compared) {
+    for (case, (count, differences)) in cases.iter().zip(compared) {
         values += count;
-        seconds.push((time_s, &*case.name));
         for one in differences {
             let may = moves.allow(&case.name, &one.path);
             *(if may { &mut may_differ } else { &mut differ }) += 1;
-            println!(
-                "{}: {one}{}",
-                case.name,
-                if may { " (as it may)" } else { "" }
-            );
+            let said = if may { " (as it may)" } else { "" };
+            println!("{}: {one}{said}", case.name);
         }
     }
-    seconds.sort_by(|one, other| other.0.total_cmp(&one.0));
-    let longest = seconds.iter().take(5);
-    let longest: Vec<String> = longest
-        .map(|(time_s, name)| format!("{name} {time_s:.1}"))
-        .collect();
     let whole = !small && names.is_empty();
+    let least = if whole { RECORDS } else { 1 } as f64;
+    let name =
+        "keys of them that differ and may not, by more than 1e-6 of their sigma or of themselves";
+    let differ = Figure::at_most(name, 0.0, f64::from(differ), "");
     let mut figures = vec![
-        number_of(&cases, whole),
-        number_that(differ, write),
+        Figure::within(
+            "records whose results are compared with those of an earlier build",
+            [least, f64::INFINITY],
+            cases.len() as f64,
+        ),
+        Figure {
+            // Not judged where results are renewed.
+            holds: differ.holds.filter(|_| !write),
+            ..differ
+        },
         Figure::note("values compared", values.to_string()),
         Figure::note("keys that differ as they may", may_differ.to_string()),
-        Figure::note("longest of the records, s", longest.join(", ")),
     ];
     if whole {
         let name = "entries of moves.toml that nothing needs";
@@ -109,43 +108,6 @@ pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
         }
     }
     Ok(figures)
-}
-
-/// The records, of each kind and in each state.
-fn number_of(cases: &[Case], whole: bool) -> Figure {
-    let of = |key: fn(&Case) -> &str| {
-        let mut counts = BTreeMap::new();
-        for case in cases {
-            *counts.entry(key(case)).or_insert(0) += 1;
-        }
-        let counts = counts.iter().map(|(name, count)| format!("{count} {name}"));
-        counts.collect::<Vec<_>>().join(", ")
-    };
-    let name = "records whose results are compared with those of an earlier build";
-    let least = if whole { RECORDS } else { 1 } as f64;
-    let measured = format!(
-        "{}: {}; {}",
-        cases.len(),
-        of(|case| &case.kind),
-        of(|case| &case.state)
-    );
-    Figure {
-        measured,
-        ..Figure::within(name, [least, f64::INFINITY], cases.len() as f64)
-    }
-}
-
-/// The keys that differ and may not; not judged where results are renewed.
-fn number_that(differ: usize, write: bool) -> Figure {
-    let name =
-        "keys of them that differ and may not, by more than 1e-6 of their sigma or of themselves";
-    let figure = Figure::within(name, [0.0, 0.0], differ as f64);
-    Figure {
-        target: "0".to_owned(),
-        measured: differ.to_string(),
-        holds: figure.holds.filter(|_| !write),
-        ..figure
-    }
 }
 
 /// The folder of the comparison.

@@ -117,7 +117,6 @@ impl Figure {
         }
     }
 
-
     /// The same figure with the share that it states.
     pub(crate) fn of_share(self, share: Proportion) -> Self {
         Self {

@@ -6,18 +6,16 @@ mod levels;
 mod recurring;
 mod whole;
 
-use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
 
-use gyrocal_record::write_json;
-use gyrocal_testkit::{Tool, leave_out, system_python, timing, tool};
+use gyrocal_testkit::{Tool, leave_out, system_python, tool};
 use serde_json::Value;
 
 use crate::error::Error;
 use crate::figure::Figure;
-use crate::harness::sources::of;
+use crate::harness::sources::{Sources, of};
 use crate::harness::{Context, Population, Size};
 use crate::kernel::instructions::{cargo, output, root};
 
@@ -37,7 +35,7 @@ pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
     figures.extend(recurring::figures(context)?);
     figures.extend(whole::figures(context)?);
     if !matches!(context.size, Size::Most(_)) {
-        figures.extend(of_package(context.is_small())?);
+        figures.extend(of_package(context)?);
     }
     Ok(figures)
 }
@@ -54,7 +52,8 @@ fn fleets<'a, R>(
 }
 
 /// Those of the package. The small version repeats less and leaves the fleet to the tests of the package.
-fn of_package(small: bool) -> Result<Vec<Figure>, Error> {
+fn of_package(context: &Context) -> Result<Vec<Figure>, Error> {
+    let small = context.is_small();
     let build = root().join(PACKAGE).join("build");
     if let Err(missing) = output(Command::new(build).arg("environment")) {
         leave_out(&missing.to_string());
@@ -73,7 +72,7 @@ fn of_package(small: bool) -> Result<Vec<Figure>, Error> {
     if !small {
         figures.push(spark(RECORDS_OF_SPARK)?);
         figures.push(overhead(15)?);
-        figures.extend(engine::figures()?);
+        figures.extend(engine::figures(context)?);
     }
     Ok(figures)
 }
@@ -110,43 +109,17 @@ fn measured_by(python: &Path, arguments: &[&str]) -> Result<Measured, Error> {
     )?))
 }
 
-/// Files of the installed package. The wheel that they come in has a list of its parts with a number of its own.
-fn installed() -> Result<Vec<PathBuf>, Error> {
-    let mut pythons = std::fs::read_dir(folder().join("environment/lib"))?;
-    let python = pythons.next().ok_or("the environment has no library")??;
-    let package = python.path().join("site-packages/gyrocal");
-    let files = std::fs::read_dir(package)?.map(|entry| Ok(entry?.path()));
-    let mut files = files.collect::<Result<Vec<PathBuf>, Error>>()?;
-    files.retain(|path| path.is_file());
-    files.sort();
-    Ok(files)
-}
-
-/// The same of a measurement that takes minutes: what was measured of this package by these scripts, with these
-/// other packages on this processor, is kept.
-fn measured_once(arguments: &[&str]) -> Result<Measured, Error> {
-    let mut measures = DefaultHasher::new();
-    timing::processor().hash(&mut measures);
-    let files = ["measure.py", "measure_fleet.py", "requirements-test.lock"];
-    let files = files.map(|name| root().join(PACKAGE).join(name));
-    for file in files.into_iter().chain(installed()?) {
-        std::fs::read(file)?.hash(&mut measures);
-    }
-    let name = format!(
-        "fleet-{}-{:016x}.json",
-        arguments.join("-"),
-        measures.finish()
-    );
-    let kept = root().join("target/figures").join(name);
-    if let Ok(text) = std::fs::read_to_string(&kept)
-        && let Ok(found) = serde_json::from_str(&text)
-    {
-        eprintln!("measured before: {}", kept.display());
-        return Ok(Measured(found));
-    }
-    let found = measured(arguments)?;
-    write_json(&kept, &found.0)?;
-    Ok(found)
+/// The same of a measurement that takes minutes, kept by the hash of the package.
+fn measured_once(context: &Context, arguments: &[&str]) -> Result<Measured, Error> {
+    const SOURCES: Sources = of(&[PACKAGE], &[file!()]);
+    let name = format!("python {}", arguments.join(" "));
+    let job = |_| Ok(measured(arguments)?.0);
+    let kept = context.records(&Population::new(name, [0, 1, 0], SOURCES, job))?;
+    let found = kept.records.first().cloned().ok_or_else(|| {
+        let failures = kept.failures.iter();
+        failures.map(|one| one.message.as_str()).collect::<String>()
+    });
+    Ok(Measured(found?))
 }
 
 /// The documented lines for Spark: rows of the same bits.

@@ -1,10 +1,12 @@
 //! The C interface: its header, and its example on the host and on the target.
 
-use std::path::{Path, PathBuf};
+use std::ffi::OsString;
+use std::path::Path;
 use std::process::Command;
 
 use gyrocal_record::Record;
 
+use super::RECORD;
 use super::target::{Tools, build_on_host};
 use crate::error::Error;
 use crate::figure::Figure;
@@ -12,7 +14,6 @@ use crate::kernel::instructions::{output, root};
 
 const PACKAGE: &str = "crates/c-api";
 const LIBRARY: &str = "libgyrocal_c.a";
-const RECORD: &str = "examples/data/three_days.csv";
 /// Set to make the header instead of comparing it.
 const WRITE: &str = "GYROCAL_WRITE_HEADER";
 const WARNINGS: [&str; 6] = [
@@ -22,6 +23,18 @@ const WARNINGS: [&str; 6] = [
     "-Werror",
     "-Wconversion",
     "-O2",
+];
+/// Those of the target, where nothing is linked but what the compiler calls.
+const ON_TARGET: [&str; 9] = [
+    "-mcpu=cortex-m4",
+    "-mthumb",
+    "-mfloat-abi=hard",
+    "-mfpu=fpv4-sp-d16",
+    "-ffreestanding",
+    "-nostdlib",
+    "-ffunction-sections",
+    "-fdata-sections",
+    "-lgcc",
 ];
 
 /// Figures of the interface; `expected` are the lines that the Rust filter prints on the record.
@@ -35,7 +48,10 @@ pub(super) fn figures(tools: Option<&Tools>, expected: &[String]) -> Result<Vec<
     let record = Record::read(&root().join(RECORD))?;
     write_record(&record, &directory)?;
     let library = build_on_host(PACKAGE, &["--release"])?.join(LIBRARY);
-    let host = on_host(&directory, &library)?;
+    let program = directory.join("host");
+    let compiler = std::env::var_os("CC").unwrap_or_else(|| "cc".into());
+    built(compiler, &[], ["host.c".as_ref(), &library], &program)?;
+    let host = output(&mut Command::new(&program))?;
     figures.push(equal(
         "C: all bits on the host are those of Rust",
         &host,
@@ -43,7 +59,12 @@ pub(super) fn figures(tools: Option<&Tools>, expected: &[String]) -> Result<Vec<
     ));
     if let Some(tools) = tools {
         let library = tools.build(PACKAGE, &[])?.join(LIBRARY);
-        let program = built_for_target(&directory, &library)?;
+        let program = directory.join("target.elf");
+        let memory = root().join("examples/controller/board/memory.x");
+        let linked = format!("-T{}", memory.display());
+        let flags = [&ON_TARGET[..], &[&linked]].concat();
+        let parts = ["target.c".as_ref(), library.as_path()];
+        built("arm-none-eabi-gcc".into(), &flags, parts, &program)?;
         let target = tools.run(&program, "replay")?;
         figures.push(equal(
             "C: all bits on the target are those of Rust",
@@ -104,74 +125,33 @@ fn hexadecimal(number: f32) -> String {
     format!("{sign}0x1.{:06x}p{exponent}f", (bits & 0x007f_ffff) << 1)
 }
 
-fn example(name: &str) -> PathBuf {
-    root().join(PACKAGE).join("examples").join(name)
-}
-
-/// Compiles, links and runs the example on the host.
-fn on_host(directory: &Path, library: &Path) -> Result<String, Error> {
-    let program = directory.join("host");
-    let compiler = std::env::var_os("CC").unwrap_or_else(|| "cc".into());
-    output(
-        Command::new(compiler)
-            .args(WARNINGS)
-            .arg("-I")
-            .arg(root().join(PACKAGE).join("include"))
-            .arg("-I")
-            .arg(directory)
-            .arg(example("replay.c"))
-            .arg(example("host.c"))
-            .arg(library)
-            .args(["-Wl,--gc-sections", "-o"])
-            .arg(&program),
-    )?;
-    output(&mut Command::new(&program))
-}
-
-/// Compiles and links the example for the target; returns the firmware.
-fn built_for_target(directory: &Path, library: &Path) -> Result<PathBuf, Error> {
-    let program = directory.join("target.elf");
-    output(
-        Command::new("arm-none-eabi-gcc")
-            .args(WARNINGS)
-            .args([
-                "-mcpu=cortex-m4",
-                "-mthumb",
-                "-mfloat-abi=hard",
-                "-mfpu=fpv4-sp-d16",
-            ])
-            .args([
-                "-ffreestanding",
-                "-nostdlib",
-                "-ffunction-sections",
-                "-fdata-sections",
-            ])
-            .arg("-I")
-            .arg(root().join(PACKAGE).join("include"))
-            .arg("-I")
-            .arg(directory)
-            .arg(example("replay.c"))
-            .arg(example("target.c"))
-            .arg(library)
-            .arg("-lgcc")
-            .arg("-T")
-            .arg(root().join("examples/controller/board/memory.x"))
-            .args(["-Wl,--gc-sections", "-o"])
-            .arg(&program),
-    )?;
-    Ok(program)
+/// Compiles and links the example with the part of it that a machine needs.
+fn built(
+    compiler: OsString,
+    flags: &[&str],
+    [part, library]: [&Path; 2],
+    program: &Path,
+) -> Result<(), Error> {
+    let package = root().join(PACKAGE);
+    let examples = package.join("examples");
+    let directory = program.parent().unwrap_or(program);
+    let files = [&examples.join("replay.c"), &examples.join(part), library];
+    let mut command = Command::new(compiler);
+    command
+        .args(WARNINGS)
+        .arg("-I")
+        .arg(package.join("include"));
+    command.arg("-I").arg(directory).args(files).args(flags);
+    output(command.arg("-Wl,--gc-sections").arg("-o").arg(program))?;
+    Ok(())
 }
 
 /// Code and constants of the firmware without its record: the whole interface, start-up and replay.
 fn code(tools: &Tools, firmware: &Path, rows: usize) -> Result<Figure, Error> {
     let all = tools.section(firmware, ".text")? + tools.section(firmware, ".rodata")?;
-    let bytes = all as f64 - (12 * rows) as f64;
     let name = "f32: code and constants of a firmware with all calls, in C";
-    Ok(Figure {
-        target: "<= 32000 bytes".to_owned(),
-        measured: format!("{bytes:.0} bytes"),
-        ..Figure::within(name, [0.0, 32_000.0], bytes)
-    })
+    let bytes = all as f64 - (12 * rows) as f64;
+    Ok(Figure::at_most(name, 32_000.0, bytes, "bytes"))
 }
 
 #[cfg(test)]

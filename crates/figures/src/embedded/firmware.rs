@@ -231,12 +231,10 @@ fn soft_double(tools: &Tools, firmware: &Path, program: &str) -> Result<Figure, 
             || name.ends_with("df2")
     };
     let symbols = tools.symbols(firmware)?;
-    let found: Vec<&String> = symbols.iter().filter(|name| is_double(name)).collect();
-    let measured = found.len().to_string();
+    if symbols.is_empty() {
+        return Err(format!("no symbols in {}", firmware.display()).into());
+    }
+    let found = symbols.iter().filter(|name| is_double(name)).count();
     let name = format!("{program}: functions of software for double precision in the firmware");
-    Ok(Figure {
-        target: "0".to_owned(),
-        measured,
-        ..Figure::truth(&name, found.is_empty() && !symbols.is_empty())
-    })
+    Ok(Figure::at_most(&name, 0.0, found as f64, ""))
 }

@@ -4,6 +4,7 @@
 use super::{Measured, measured_once};
 use crate::error::Error;
 use crate::figure::Figure;
+use crate::harness::Context;
 
 /// Short records whose workers are killed, and records of three days whose stages are timed.
 const KILLED: &str = "600";
@@ -29,12 +30,12 @@ const CORE_HOUR: f64 = 0.05;
 const GIGABYTE_MONTH: f64 = 0.02;
 const STORE_RATE: f64 = 1e9;
 
-pub(super) fn figures() -> Result<Vec<Figure>, Error> {
+pub(super) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
     let records = std::env::var(RECORDS).unwrap_or_else(|_| MANY.to_owned());
-    let found = measured_once(&["many", &records])?;
+    let found = measured_once(context, &["many", &records])?;
     let turns = format!(", in turns, {} parts", found.of("blocks"));
     let mut figures = over(many(&found), found.of("records"), &turns);
-    let found = measured_once(&["fleet", KILLED, STAGED])?;
+    let found = measured_once(context, &["fleet", KILLED, STAGED])?;
     figures.extend(over(killed(&found), found.of("killed_records"), ""));
     figures.extend(over(stages(&found), found.of("records"), ""));
     Ok(figures)

@@ -96,8 +96,8 @@ pub(super) struct Lane {
     /// An effect that a watch of its own is beside for.
     sought: Option<usize>,
     alone: Option<Test<1>>,
-    /// The last step before the alarm at which the noise of a gyro was beyond thirty sigma, with its size.
-    pub(super) outlier: Option<(usize, f64)>,
+    /// The last step at which the noise of a gyro was beyond thirty sigma.
+    pub(super) outlier: Option<usize>,
     /// Sum of squares of the innovations since the onset.
     pub(super) information: f64,
 }
@@ -188,11 +188,8 @@ impl Lane {
         force: &[f64; 3],
     ) {
         let noise = self.source.as_mut().map_or([0.0; 6], Source::sample);
-        let largest = noise[..3]
-            .iter()
-            .fold(0.0_f64, |most, one| most.max(one.abs()));
-        if largest > OUTLIER && self.alarms().0.is_none() {
-            self.outlier = Some((row, largest));
+        if noise[..3].iter().any(|one| one.abs() > OUTLIER) {
+            self.outlier = Some(row);
         }
         let [mut drift, mut accel] = [[0.0; 3]; 2];
         for axis in 0..3 {

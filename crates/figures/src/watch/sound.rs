@@ -52,8 +52,8 @@ struct Year {
     days: Option<f64>,
     /// Whether the set at the alarm holds what a random walk of a gyro is.
     walks: bool,
-    /// The outlier of a gyro that the alarm followed within the life of a jump's onset, sigma.
-    outlier: Option<f64>,
+    /// Whether it followed an outlier of a gyro within the life of a jump's onset.
+    turned: bool,
 }
 
 /// Platforms of a population over a year; filter and watch expect the walk that is declared.
@@ -84,14 +84,13 @@ impl Year {
         let effects = set
             .iter()
             .filter_map(|index| EFFECTS_BY_DEFAULT.get(*index));
-        let outlier = lane.outlier.zip(row);
-        let outlier = outlier.filter(|((outlier, _), row)| row - outlier <= JUMP_LIFE);
+        let after_outlier = lane.outlier.zip(row).map(|(outlier, row)| row - outlier);
         Self {
             days: row.map(|row| row as f64 / DAY as f64),
             walks: effects
                 .clone()
                 .any(|effect| effect.walking_gyro().is_some()),
-            outlier: outlier.map(|((_, size), _)| size),
+            turned: after_outlier.is_some_and(|steps| steps <= JUMP_LIFE),
         }
     }
 }
@@ -116,7 +115,7 @@ pub(super) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
     let population = years(context, &cell, [SOUND, 0], Noise::Student4Both, [1e-5; 2]);
     let turned = |all: &Years| {
         let alarmed = all.iter().filter(|one| one.days.is_some());
-        alarmed.map(|one| one.outlier.is_some()).collect::<Vec<_>>()
+        alarmed.map(|one| one.turned).collect::<Vec<_>>()
     };
     let rows = [
         Row::new(format!("alarms in a platform-year, walk 1e-5, noise {words}"), |all: &[Years]| {

@@ -1,8 +1,11 @@
+use gyrocal_evaluation::Statistic;
+
 use super::*;
 use crate::figure::table_of;
 
 fn share(name: &str, hits: u64, trials: u64) -> Figure {
-    Figure::note_share(name, Proportion { hits, trials }, "0..9")
+    let share = Statistic::Share(Proportion { hits, trials });
+    Figure::of_statistic(name, &share, None, true).over(trials as usize, "0..9")
 }
 
 fn page() -> Vec<Row> {
