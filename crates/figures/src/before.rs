@@ -23,7 +23,7 @@ use crate::harness::Context;
 use compare::compared;
 use moves::Moves;
 
-pub(crate) use results::as_command;
+pub(crate) use results::{as_command, gyrocal};
 
 /// Number of records.
 const RECORDS: usize = 40;
@@ -87,11 +87,19 @@ pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
         "keys of them that differ and may not, by more than 1e-6 of their sigma or of themselves";
     let differ = Figure::at_most(name, 0.0, f64::from(differ), "");
     let mut figures = vec![
-        Figure::within(
-            "records whose results are compared with those of an earlier build",
-            [least, f64::INFINITY],
-            cases.len() as f64,
-        ),
+        Figure {
+            measured: format!(
+                "{}: {}; {}",
+                cases.len(),
+                counted(cases.iter().map(|case| &case.kind)),
+                counted(cases.iter().map(|case| &case.state))
+            ),
+            ..Figure::within(
+                "records whose results are compared with those of an earlier build",
+                [least, f64::INFINITY],
+                cases.len() as f64,
+            )
+        },
         Figure {
             // Not judged where results are renewed.
             holds: differ.holds.filter(|_| !write),
@@ -108,6 +116,16 @@ pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
         }
     }
     Ok(figures)
+}
+
+/// How often each name occurs.
+fn counted<'a>(names: impl Iterator<Item = &'a String>) -> String {
+    let mut counts = BTreeMap::new();
+    for name in names {
+        *counts.entry(name).or_insert(0) += 1;
+    }
+    let counts = counts.iter().map(|(name, count)| format!("{count} {name}"));
+    counts.collect::<Vec<_>>().join(", ")
 }
 
 /// The folder of the comparison.

@@ -6,8 +6,8 @@ use gyrocal_record::{
     Bench, CalibrationReport, Coefficient, FitVerdict, NoiseReport, Record, RunReport,
 };
 use gyrocal_report::page::{
-    Card, Cell, Column, EstimateRow, Estimates, Item, List, Origin, Part, Section, Summary, Table,
-    Tint, Tone, ValueWithSigma,
+    Card, Cell, Column, EstimateRow, Estimates, Item, List, Part, Section, Summary, Table, Tint,
+    Tone, ValueWithSigma,
 };
 use gyrocal_statistics::format;
 
@@ -101,45 +101,6 @@ fn over_time(
         }
     }
     Ok(sections)
-}
-
-/// The page of a record with a fit of the nominal model alone: its charts over time.
-///
-/// # Errors
-/// [`PageError`] where a simulation fails.
-pub fn of_open_loop(
-    name: &str,
-    record: &Record,
-    bench: &Bench,
-    fit: &FittedPlatform<'_>,
-) -> Result<Part, PageError> {
-    let one = CalibratedRecord {
-        name: name.to_owned(),
-        record,
-        bench,
-        fit,
-    };
-    let mut sections = over_time(&one, None)?;
-    sections.push(coefficients::site(fit)?);
-    Ok(Part {
-        name: name.to_owned(),
-        size: format!(
-            "{} rows over {:.2} days",
-            record.len(),
-            record.duration_s() / 86_400.0
-        ),
-        summary: Summary {
-            tone: Tone::Plain,
-            headline: "Open-loop simulation of the nominal model".to_owned(),
-            sentence: format!(
-                "Mean normalised innovation squared {:.3}, expected 3.",
-                fit.nis_mean()
-            ),
-            cards: Vec::new(),
-        },
-        sections,
-        origin: Origin::default(),
-    })
 }
 
 fn summary(report: &CalibrationReport) -> Summary {

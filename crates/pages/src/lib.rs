@@ -10,7 +10,6 @@
 //! | [`of_diagnosis`] | a diagnosis with its fits: with charts over time |
 //! | [`of_result`] | a written result of a diagnosis: what it tells without the record |
 //! | [`of_calibration`] | a calibration |
-//! | [`of_open_loop`] | a fit of the nominal model alone |
 //! | [`of_plan`] | a planned next run |
 //! | [`of_plant`] | a diagnosis of any plant |
 //! | [`of_fleet`] | what a fleet shows |
@@ -43,7 +42,7 @@ mod uncertainty;
 mod words;
 
 pub use allan::{AllanAnswer, of_allan};
-pub use calibration::{CalibratedRecord, of_calibration, of_open_loop};
+pub use calibration::{CalibratedRecord, of_calibration};
 pub use diagnosis::{of_diagnosis, of_result};
 pub use error::PageError;
 pub use fleet::of_fleet;

@@ -36,11 +36,18 @@ pub(crate) fn as_command() -> Option<impl Iterator<Item = OsString>> {
         .then(|| [OsString::from("gyrocal")].into_iter().chain(arguments))
 }
 
+/// This program as the command `gyrocal` in a folder.
+pub(crate) fn gyrocal(folder: &Path) -> Result<Command, Error> {
+    let mut command = Command::new(std::env::current_exe()?);
+    command.arg(AS_COMMAND).current_dir(folder);
+    Ok(command)
+}
+
 /// Runs a line as `gyrocal`; returns the exit code and what it says on stderr.
 pub(super) fn ran(line: &str, folder: &Path) -> Result<(i32, String), Error> {
-    let mut command = Command::new(std::env::current_exe()?);
-    command.arg(AS_COMMAND).args(words(line, folder));
-    let outcome = run(command.current_dir(folder).env_remove("RUST_BACKTRACE"));
+    let mut command = gyrocal(folder)?;
+    command.args(words(line, folder));
+    let outcome = run(command.env_remove("RUST_BACKTRACE"));
     let code = outcome
         .code
         .ok_or_else(|| format!("`{line}` was ended by a signal"))?;

@@ -13,7 +13,12 @@ pub(crate) struct Row<'a, R> {
     /// Why the target is what it is.
     reason: &'static str,
     of: Of<'a, R>,
+    /// Words behind the statistic.
+    remark: Option<Remark<'a, R>>,
 }
+
+/// Words about all records.
+type Remark<'a, R> = Box<dyn Fn(&[R]) -> String + 'a>;
 
 /// What a row says of all records.
 type Of<'a, R> = Box<dyn Fn(&[R]) -> Measured + 'a>;
@@ -33,6 +38,7 @@ impl<'a, R> Row<'a, R> {
             target: None,
             reason: "",
             of: Box::new(move |records| Measured::Statistic(of(records))),
+            remark: None,
         }
     }
 
@@ -94,7 +100,14 @@ impl<'a, R> Row<'a, R> {
             target: None,
             reason: "",
             of: Box::new(move |records| Measured::Words(of(records), records.len())),
+            remark: None,
         }
+    }
+
+    /// With words behind the statistic.
+    pub(crate) fn told(self, remark: impl Fn(&[R]) -> String + 'a) -> Self {
+        let remark: Option<Remark<'a, R>> = Some(Box::new(remark));
+        Self { remark, ..self }
     }
 
     /// With a lower limit.
@@ -123,12 +136,15 @@ impl<'a, R> Row<'a, R> {
 
     /// The figure of these records.
     pub(super) fn figure(&self, of: &Records<R>) -> Figure {
-        let figure = match (self.of)(&of.records) {
+        let mut figure = match (self.of)(&of.records) {
             Measured::Statistic(statistic) => {
                 Figure::of_statistic(&self.name, &statistic, self.target, of.full)
             }
             Measured::Words(words, runs) => Figure::note(&self.name, words).over(runs, ""),
         };
+        if let Some(remark) = &self.remark {
+            figure.measured += &format!("; {}", remark(&of.records));
+        }
         let runs = figure.runs;
         Figure {
             reason: self.reason.to_owned(),
