@@ -21,7 +21,7 @@ pub(crate) mod stamp;
 pub(crate) mod topic;
 
 pub(crate) use context::{Context, Seeds, Size};
-pub(crate) use population::Population;
+pub(crate) use population::{Population, Records};
 pub(crate) use row::Row;
 
 /// Range of the coverage of 95 % intervals, and its reason.

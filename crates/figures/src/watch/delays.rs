@@ -1,8 +1,10 @@
 //! Delays beside the watch of one effect alone, and the sets at the alarms; and jumps of the attitude.
 
+use std::sync::Arc;
+
 use gyrocal::watch::{EFFECTS_BY_DEFAULT, Grid};
 use gyrocal::{FilterSettings, Site};
-use gyrocal_evaluation::Statistic;
+use gyrocal_evaluation::{Statistic, Target};
 use gyrocal_statistics::Proportion;
 use serde::{Deserialize, Serialize};
 
@@ -12,7 +14,7 @@ use super::platform::{Platform, information};
 use super::{DAY, lanes, platforms};
 use crate::error::Error;
 use crate::figure::Figure;
-use crate::harness::{Context, Row};
+use crate::harness::{Context, Records, Row};
 
 /// Populations that no constant was tuned on, and the one that constants of the watch are tuned on.
 const DELAYS: u64 = 20_261_232;
@@ -36,8 +38,8 @@ const EFFECTS: [(&str, Effect, &str); 4] = [
     ("cross-axis term", Effect::Cross(0, 1), "gyro_x.g_y"),
     ("bias", Effect::Bias(0), "accel_x.bias"),
 ];
-/// Roots of the information in the first day; the small version has the last.
-const SIZES: [f64; 3] = [2.0, 4.0, 8.0];
+/// Roots of the information in the first day, with platforms of the small version.
+const SIZES: [(f64, u64); 3] = [(2.0, 0), (4.0, 0), (8.0, 2)];
 /// Walks that are declared and there, deg/h/√h.
 const WALKS: [f64; 2] = [0.0, 1e-5];
 
@@ -61,60 +63,53 @@ struct Delay {
     set: usize,
 }
 
-/// Runs of a platform, by walk, effect and size.
-type Runs = Vec<Vec<Delay>>;
+/// Runs of one platform.
+type Runs = Vec<Delay>;
 
 pub(super) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
     let mut figures = of_information(context)?;
-    let small = context.is_small();
-    let lanes = lanes(context);
-    let (sizes, days) = if small {
-        (&SIZES[2..], FEW_DAYS)
-    } else {
-        (&SIZES[..], DAYS)
-    };
-    let population = platforms("delays", [40, 2], |number| {
-        delays(number, sizes, lanes, days)
-    });
-    let mut names = Vec::new();
+    let mut cells = Vec::new();
     for walk in WALKS {
-        for (kind, ..) in EFFECTS {
-            names.extend(
-                sizes
-                    .iter()
-                    .map(|size| format!("{kind} of {size} sigma a day, walk {walk:.0e}")),
-            );
+        for (kind, effect, id) in EFFECTS {
+            for (size, small) in SIZES {
+                let name = format!("{kind} of {size} sigma a day, walk {walk:.0e}");
+                let trial = Trial {
+                    cell: cells.len() as u64,
+                    walk,
+                    effect,
+                    index: index(id),
+                    size,
+                    lanes: lanes(context),
+                    days: if context.is_small() { FEW_DAYS } else { DAYS },
+                };
+                let population = platforms(&name, [40, small], move |number| trial.runs(number));
+                let ratio = format!("median delay over the one of this effect alone: {name}");
+                let ratio = Row::new(ratio, over_alone).at_most(1.4, SHARED).told(told);
+                figures.extend(context.measure(&population, &[ratio])?);
+                cells.push((name, context.records(&population)?));
+            }
         }
     }
-    let ratios = names.iter().enumerate().map(|(place, name)| {
-        let name = format!("median delay over the one of this effect alone: {name}");
-        Row::new(name, move |all: &[Runs]| {
-            Statistic::Median(over_alone(all, place))
-        })
-        .at_most(1.4, SHARED)
-        .told(move |all| told(all, place))
-    });
-    let rows: Vec<Row<'_, Runs>> = ratios.chain(of_sets(&names)).collect();
-    figures.extend(context.measure(&population, &rows)?);
+    figures.extend(of_sets(&cells));
     figures.extend(of_jumps(context)?);
     Ok(figures)
 }
 
 /// Information of a day on sizes of effects over what the watch takes for it.
 fn of_information(context: &Context) -> Result<Vec<Figure>, Error> {
-    let effects = EFFECTS.map(|(_, effect, _)| effect);
-    let population = platforms("information", [24, 6], |number| {
-        information([TUNED_ON, number], &effects, onset(number), 1e-5)
-    });
     let settings = FilterSettings::<f64>::at_site(Site::at_latitude_deg(0.0));
-    let rows = core::array::from_fn::<_, 4, _>(|place| {
-        let (kind, _, id) = EFFECTS[place];
-        let taken = EFFECTS_BY_DEFAULT[index(id)].information_of_a_day(&settings);
+    let mut figures = Vec::new();
+    for (kind, effect, id) in EFFECTS {
         let name = format!("{kind}: information of a day over the constant of the watch, median");
-        Row::median(name, move |all: &Vec<f64>| Some(all.get(place)? / taken))
-            .between([0.5, 2.0], "a factor of two costs a tenth of the delay")
-    });
-    context.measure(&population, &rows)
+        let population = platforms(&name, [24, 6], |number| {
+            information([TUNED_ON, number], effect, onset(number), 1e-5)
+        });
+        let taken = EFFECTS_BY_DEFAULT[index(id)].information_of_a_day(&settings);
+        let row = Row::median(name, |found: &f64| Some(found / taken));
+        let row = row.between([0.5, 2.0], "a factor of two costs a tenth of the delay");
+        figures.extend(context.measure(&population, &[row])?);
+    }
+    Ok(figures)
 }
 
 /// Index of an effect among those that are watched.
@@ -128,34 +123,36 @@ fn onset(number: u64) -> usize {
     SETTLED * DAY + (number * 37 % 120) as usize
 }
 
-/// Runs of one platform with each effect of each size, for at most `days` from the onset.
-fn delays(number: u64, sizes: &[f64], lanes: usize, days: usize) -> Result<Runs, Error> {
-    let (platform, onset) = ([DELAYS, number], onset(number));
-    let mut runs = Vec::new();
-    for walk in WALKS {
-        let effects = EFFECTS.map(|(_, effect, _)| effect);
-        let units = information(platform, &effects, onset, walk)?;
-        let mut all: Vec<Lane> = Vec::new();
-        for ((_, effect, id), unit) in EFFECTS.iter().zip(&units) {
-            for size in sizes.iter().map(|sigmas| sigmas / unit.sqrt()) {
-                let first = all.len();
-                all.extend((first..first + lanes).map(|stream| {
-                    let lane = Lane::noisy(platform, stream, Noise::Declared, walk);
-                    lane.with(*effect, size, onset).beside(index(id))
-                }));
-            }
-        }
-        Platform::new(platform, onset + days * DAY, walk)?.run(&mut all)?;
-        let ids = EFFECTS
-            .iter()
-            .flat_map(|(_, _, id)| sizes.iter().map(|_| index(id)));
-        let cells = all.chunks(lanes).zip(ids);
-        runs.extend(cells.map(|(lanes, index)| {
-            let delay = |lane: &Lane| Delay::of(lane, onset, index);
-            lanes.iter().map(delay).collect()
-        }));
+/// An effect of a size that begins on platforms with a declared walk.
+#[derive(Clone, Copy, Debug)]
+struct Trial {
+    /// Its number; noise is drawn anew for each.
+    cell: u64,
+    walk: f64,
+    effect: Effect,
+    index: usize,
+    /// Root of the information in the first day.
+    size: f64,
+    lanes: usize,
+    /// Days that an alarm is waited for.
+    days: usize,
+}
+
+impl Trial {
+    fn runs(&self, number: u64) -> Result<Runs, Error> {
+        let (platform, onset) = ([DELAYS, number], onset(number));
+        let unit = information(platform, self.effect, onset, self.walk)?;
+        let lane = |stream| {
+            let noise = [DELAYS + self.cell, number];
+            Lane::noisy(noise, stream, Noise::Declared, self.walk)
+                .with(self.effect, self.size / unit.sqrt(), onset)
+                .beside(self.index)
+        };
+        let mut lanes: Vec<Lane> = (0..self.lanes).map(lane).collect();
+        Platform::new(platform, onset + self.days * DAY, self.walk)?.run(&mut lanes)?;
+        let delay = |lane: &Lane| Delay::of(lane, onset, self.index);
+        Ok(lanes.iter().map(delay).collect())
     }
-    Ok(runs)
 }
 
 impl Delay {
@@ -172,88 +169,80 @@ impl Delay {
     }
 }
 
-/// Runs of one walk, effect and size.
-fn cell(all: &[Runs], place: usize) -> impl Iterator<Item = &Delay> {
-    all.iter().filter_map(move |runs| runs.get(place)).flatten()
-}
-
-/// Those with an alarm after the onset.
-fn found(all: &[Runs], place: usize) -> impl Iterator<Item = &Delay> {
-    cell(all, place).filter(|run| run.days > Some(0.0))
-}
-
 /// Delay over that of the effect alone, run by run; a run without an alarm is counted to the last day.
-fn over_alone(all: &[Runs], place: usize) -> Vec<f64> {
+fn over_alone(all: &[Runs]) -> Statistic {
     let ratio = |run: &Delay| {
         let alone = run.alone_days.filter(|days| *days > 0.0)?;
         Some(run.days.unwrap_or(DAYS as f64) / alone)
     };
-    cell(all, place).filter_map(ratio).collect()
+    Statistic::Median(all.iter().flatten().filter_map(ratio).collect())
 }
 
 /// Median delays; runs without an alarm come last.
-fn told(all: &[Runs], place: usize) -> String {
+fn told(all: &[Runs]) -> String {
     let median = |of: fn(&Delay) -> Option<f64>| {
-        let mut days: Vec<f64> = cell(all, place)
-            .map(|run| of(run).unwrap_or(f64::INFINITY))
-            .collect();
+        let days = all
+            .iter()
+            .flatten()
+            .map(|run| of(run).unwrap_or(f64::INFINITY));
+        let mut days: Vec<f64> = days.collect();
         days.sort_by(f64::total_cmp);
         match days.get(days.len() / 2) {
             Some(days) if days.is_finite() => format!("{days:.2} days"),
             _ => "not in the time".to_owned(),
         }
     };
-    format!(
-        "{}, alone {}",
-        median(|run| run.days),
-        median(|run| run.alone_days)
-    )
+    let [days, alone] = [median(|run| run.days), median(|run| run.alone_days)];
+    format!("{days}, alone {alone}")
 }
 
 /// The sets at all alarms, and those of the effect and size that they hold most rarely.
-fn of_sets(names: &[String]) -> [Row<'_, Runs>; 3] {
-    const REASON: &str = "sets of 95 %";
-    let count = names.len();
-    let held = |all: &[Runs], place| Proportion::of(found(all, place).map(|run| run.held));
-    let shares = move |all: &[Runs]| {
-        let places = (0..count).filter(|place| {
-            found(all, *place).count() as f64 >= ALARMED * cell(all, *place).count() as f64
-        });
-        places
-            .map(|place| (place, held(all, place)))
-            .collect::<Vec<_>>()
+fn of_sets(cells: &[(String, Arc<Records<Runs>>)]) -> [Figure; 3] {
+    let (mut sizes, mut all, mut of_cells) = (Vec::new(), Vec::new(), Vec::new());
+    for (name, records) in cells {
+        let runs: Vec<&Delay> = records.records.iter().flatten().collect();
+        let found = runs.iter().filter(|run| run.days > Some(0.0));
+        let held: Vec<bool> = found.clone().map(|run| run.held).collect();
+        sizes.extend(found.map(|run| run.set as f64));
+        if !held.is_empty() && held.len() as f64 >= ALARMED * runs.len() as f64 {
+            of_cells.push((Proportion::of(held.iter().copied()), name));
+        }
+        all.extend(held);
+    }
+    let least = of_cells
+        .iter()
+        .min_by(|one, other| one.0.share().total_cmp(&other.0.share()));
+    let least = least.map_or("", |(_, name)| name.as_str());
+    let of_cells = of_cells.iter().map(|(share, _)| *share).collect();
+    let full = cells.iter().all(|(_, records)| records.full);
+    let figure = |name: &str, statistic: Statistic, target: Target, reason: &str| Figure {
+        reason: reason.to_owned(),
+        ..Figure::of_statistic(name, &statistic, Some(target), full)
     };
-    let least = move |all: &[Runs]| {
-        let shares = shares(all);
-        let least = shares
-            .iter()
-            .min_by(|one, other| one.1.share().total_cmp(&other.1.share()));
-        least.map_or_else(String::new, |(place, _)| names[*place].clone())
-    };
-    let at_alarm = move |all: &[Runs], of: fn(&Delay) -> f64| {
-        let runs = (0..count).flat_map(|place| found(all, place));
-        runs.map(of).collect::<Vec<f64>>()
-    };
-    let every = move |all: &[Runs]| {
-        let held = at_alarm(all, |run| f64::from(u8::from(run.held)));
-        Statistic::Share(Proportion::of(held.into_iter().map(|held| held > 0.0)))
-    };
+    const SETS: &str = "sets of 95 %";
+    const ALIKE: &str = "a step, a ramp and a cross-axis term of one gyro are alike for some hours";
+    let share = Statistic::Share(Proportion::of(all));
+    let rarest = "the same of the effect and size with the least share";
+    let mut rarest = figure(
+        rarest,
+        Statistic::Least(of_cells),
+        Target::AtLeast(0.95),
+        SETS,
+    );
+    rarest.measured += &format!("; {least}");
     [
-        Row::new("set at the alarm holds the truth", every).at_least(0.95, REASON),
-        Row::new(
-            "the same of the effect and size with the least share",
-            move |all: &[Runs]| {
-                Statistic::Least(shares(all).into_iter().map(|(_, share)| share).collect())
-            },
-        )
-        .at_least(0.95, REASON)
-        .told(least),
-        Row::new("effects in the set, mean", move |all: &[Runs]| {
-            Statistic::Mean(at_alarm(all, |run| run.set as f64))
-        })
-        .at_most(
-            3.0,
-            "a step, a ramp and a cross-axis term of one gyro are alike for some hours",
+        figure(
+            "set at the alarm holds the truth",
+            share,
+            Target::AtLeast(0.95),
+            SETS,
+        ),
+        rarest,
+        figure(
+            "effects in the set, mean",
+            Statistic::Mean(sizes),
+            Target::AtMost(3.0),
+            ALIKE,
         ),
     ]
 }
@@ -294,8 +283,7 @@ fn knocks(number: u64, z: f64, lanes: usize) -> Result<Vec<Option<usize>>, Error
     let onset = SETTLED_FOR_KNOCKS * DAY + (number * 17 % 120) as usize;
     let (platform, walk) = ([KNOCKS, number], 1e-5);
     let effect = Effect::Knock((number % 3) as usize);
-    let unit = information(platform, &[effect], onset, walk)?;
-    let size = z / unit.iter().sum::<f64>().sqrt();
+    let size = z / information(platform, effect, onset, walk)?.sqrt();
     let lane = |stream| Lane::noisy(platform, stream, Noise::Declared, walk);
     let lanes = (0..lanes).map(|stream| lane(stream).with(effect, size, onset));
     let mut all: Vec<Lane> = lanes.collect();

@@ -82,15 +82,14 @@ impl Platform {
     }
 }
 
-/// Information that a platform shows on a unit of each effect in the first day after its onset.
+/// Information that a platform shows on a unit of an effect in the first day after its onset.
 pub(super) fn information(
     platform: [u64; 2],
-    effects: &[Effect],
+    effect: Effect,
     onset: usize,
     walk: f64,
-) -> Result<Vec<f64>, Error> {
-    let silent = |effect: &Effect| Lane::silent().with(*effect, 1.0, onset);
-    let mut lanes: Vec<Lane> = effects.iter().map(silent).collect();
-    Platform::new(platform, onset + DAY, walk)?.run(&mut lanes)?;
-    Ok(lanes.iter().map(|lane| lane.information).collect())
+) -> Result<f64, Error> {
+    let mut lane = [Lane::silent().with(effect, 1.0, onset)];
+    Platform::new(platform, onset + DAY, walk)?.run(&mut lane)?;
+    Ok(lane[0].information)
 }
