@@ -9,7 +9,6 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 
 use crate::error::EvaluationError;
 use crate::projection::ProjectedScores;
-use crate::scenario::duration_h;
 use crate::signature::{Signature, SignatureColumns};
 
 /// Onsets are drawn from the middle of the record, this fraction of it away from both ends.
@@ -91,7 +90,8 @@ pub fn testable_effects(scenario: &Scenario) -> Vec<&'static Effect> {
 pub fn draw_shape(effect: &Effect, scenario: &Scenario, random: &mut Draw) -> Option<f64> {
     match effect.shape()?.role {
         Role::TimeConstant(_) => {
-            Some(random.log_uniform([SHORTEST_TIME_CONSTANT_H, 0.25 * duration_h(scenario)]))
+            let duration_h = scenario.duration_s / 3600.0;
+            Some(random.log_uniform([SHORTEST_TIME_CONSTANT_H, 0.25 * duration_h]))
         }
         _ => Some((MARGIN + (1.0 - 2.0 * MARGIN) * random.uniform()) * scenario.duration_s),
     }
@@ -163,16 +163,27 @@ pub fn inject_one_of(
     let clean = simulate(&scenario)?;
     let fitted = fit(&clean, noise)?;
     let tried = if effects.is_empty() { 0 } else { MAX_DRAWS };
-    for _ in 0..tried {
+    let only = first_of(tried, strength, |_| {
         let effect = *random.one_of(effects);
         let with_shape = [(effect, draw_shape(effect, &scenario, random))];
         let injected = inject_into(&clean, &fitted, &with_shape, strength, 1.0, random)?;
-        if let Some(only) = injected.and_then(|injected| injected.into_iter().next()) {
-            scenario.hidden.push(only.to_hidden()?);
-            return Ok((scenario, only));
-        }
-    }
-    Err(EvaluationError::NotInjectable { tried, strength })
+        Ok(injected.and_then(|injected| injected.into_iter().next()))
+    })?;
+    scenario.hidden.push(only.to_hidden()?);
+    Ok((scenario, only))
+}
+
+/// What the first of so many draws gives that gives anything.
+pub(crate) fn first_of<T>(
+    draws: usize,
+    strength: f64,
+    mut draw: impl FnMut(usize) -> Result<Option<T>, EvaluationError>,
+) -> Result<T, EvaluationError> {
+    let tried = draws;
+    let mut found = (0..draws).filter_map(|number| draw(number).transpose());
+    found
+        .next()
+        .unwrap_or(Err(EvaluationError::NotInjectable { tried, strength }))
 }
 
 /// As [`inject`], for a record without the effects that is simulated and fitted already.

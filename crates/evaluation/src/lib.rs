@@ -20,9 +20,9 @@
 //!   targets, detection by family of effects, and the methods side by side. It is the job of
 //!   `gyrocal characterise`.
 //!
-//! With the feature `field`, `FieldPopulation::run` and `PlantKind::run` judge the diagnosis of records that a
-//! user could have and the simulator does not make: clean ones with one wrong number in the bench file, and kinds
-//! from irregular rows to records of two platforms. The right answers are data (`Right`).
+//! With the feature `field`, each `FieldPopulation` has a job that judges the diagnosis of records that a user could
+//! have and the simulator does not make: clean ones with one wrong number in the bench file, kinds from irregular
+//! rows to records of two platforms, and kinds of records of a servo. The right answers are data.
 //!
 //! # Strength of an effect
 //!
@@ -98,7 +98,6 @@ mod scenario;
 mod score;
 mod signature;
 mod statistic;
-mod unlisted;
 
 pub use baseline::{BaselineMethod, BaselineResult};
 pub use budget_trial::{BudgetTrial, SpreadTrial, TrueCoefficients};
@@ -114,10 +113,7 @@ pub use comparison::{Answer, ComparisonRow, OWN_METHOD, comparison};
 pub use effect_family::{FamilyRow, families};
 pub use error::EvaluationError;
 #[cfg(feature = "field")]
-pub use field::{
-    Answer, Change, EXEMPT, FieldKind, FieldOutcome, FieldPopulation, FieldRow, Judgement,
-    PlantKind, Right, Silent, VISIBLE, WrongKey,
-};
+pub use field::{FieldOutcome, FieldPopulation, Judgement};
 pub use injection::{
     InjectedEffect, draw_shape, inject, inject_any, inject_into, inject_one_of, nominal_fit,
     testable_effects,
@@ -133,4 +129,3 @@ pub use record_score::{
 pub use scenario::scenario;
 pub use signature::{Signature, SignatureColumns};
 pub use statistic::{Statistic, Target};
-pub use unlisted::{UnlistedEffect, UnlistedKind};

@@ -9,13 +9,13 @@ use gyrocal_calibration::{FittedPlatform, Options, Run};
 use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, diagnose};
 use gyrocal_hypothesis::{Column, ExtraColumns, ModelExtension};
 use gyrocal_statistics::deviates::Draw;
+use gyrocal_truth::faults::{UnlistedEffect, UnlistedKind};
 use gyrocal_truth::{Scenario, Simulation, simulate};
 
 use crate::error::EvaluationError;
-use crate::injection::nominal_fit;
+use crate::injection::{first_of, nominal_fit};
 use crate::record_score::{InjectedScore, RecordScore};
 use crate::score::findings_score;
-use crate::unlisted::{UnlistedEffect, UnlistedKind};
 
 /// Corrections of a size after a diagnosis: the findings depend on the size.
 const CORRECTIONS: usize = 3;
@@ -27,7 +27,7 @@ const NEAR: f64 = 0.1;
 const LARGEST_CORRECTION: f64 = 4.0;
 
 /// Number of effects drawn before a record is given up.
-const MAX_DRAWS: usize = 8;
+pub(crate) const MAX_DRAWS: usize = 8;
 
 /// The strength given the nominal model must be within this factor of the requested one: effects that
 /// switch are not proportional to their size.
@@ -46,20 +46,14 @@ pub(crate) fn score_out_of_catalogue(
 ) -> Result<RecordScore, EvaluationError> {
     let clean = simulate(scenario)?;
     let residuals = whitened_residuals(&clean)?;
-    for attempt in 0..MAX_DRAWS {
+    first_of(MAX_DRAWS, strength, |attempt| {
         let kinds = UnlistedKind::ALL;
         let kind = kinds[(number as usize + attempt) % kinds.len()];
         let mut effect = UnlistedEffect::draw(kind, scenario, random)?;
-        if !scale(scenario, &residuals, &mut effect, strength)? {
-            continue;
+        match scale(scenario, &residuals, &mut effect, strength)? {
+            true => diagnosed(scenario, clean.clone(), effect, strength),
+            false => Ok(None),
         }
-        if let Some(score) = diagnosed(scenario, clean.clone(), effect, strength)? {
-            return Ok(score);
-        }
-    }
-    Err(EvaluationError::NotInjectable {
-        tried: MAX_DRAWS,
-        strength,
     })
 }
 

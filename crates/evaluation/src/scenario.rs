@@ -30,11 +30,6 @@ pub fn scenario(number: u64) -> Scenario {
     }
 }
 
-/// Time between the first and the last row of a scenario, h.
-pub(crate) fn duration_h(scenario: &Scenario) -> f64 {
-    scenario.duration_s / 3600.0
-}
-
 #[cfg(test)]
 mod tests {
     use super::scenario;

@@ -2,7 +2,8 @@
 #![cfg(test)]
 
 use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
-use gyrocal_evaluation::{PopulationCell, RecordScore, UnlistedEffect, UnlistedRecord, scenario};
+use gyrocal_evaluation::{PopulationCell, RecordScore, UnlistedRecord, scenario};
+use gyrocal_truth::faults::UnlistedEffect;
 
 fn evaluated(cell: PopulationCell, seed: u64) -> RecordScore {
     cell.evaluate(seed, &[]).unwrap()

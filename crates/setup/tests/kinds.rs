@@ -1,8 +1,9 @@
 //! Every breakage is told by a finding of its kind, or of one that no record tells from it.
+#![cfg(test)]
 
 use gyrocal_record::{Bench, Gravity, Record};
 use gyrocal_setup::{SetupCheck, SetupKind, check_setup};
-use gyrocal_testkit::broken_setups::{BREAKAGES, Breakage, Broken, sound};
+use gyrocal_truth::faults::{BREAKAGES, Breakage, Broken, sound};
 
 /// First of the seeds; each breakage has its own thousand.
 const FIRST_SEED: u64 = 2_100_000;
@@ -26,7 +27,7 @@ fn gross_errors_are_told_and_nothing_beside() {
         let first = FIRST_SEED + 1000 * index as u64;
         let missed: Vec<u64> = (first..first + RECORDS)
             .filter(|seed| {
-                let broken = breakage.record(*seed);
+                let broken = breakage.record(*seed).unwrap();
                 !is_right(breakage, &check_setup(&broken.record, &broken.bench))
             })
             .collect();
@@ -44,7 +45,7 @@ fn broken(first: &str, second: &str, seed: u64) -> Broken {
         let found = BREAKAGES.iter().find(|breakage| breakage.name == name);
         found.unwrap_or_else(|| panic!("no breakage {name}"))
     };
-    let mut broken = of(first).record(seed);
+    let mut broken = of(first).record(seed).unwrap();
     of(second).spoil(&mut broken);
     broken
 }
@@ -139,7 +140,7 @@ fn what_can_be_mended_is_mended_beside_an_error_that_stops() {
 fn what_stops_is_not_said_to_be_left_out() {
     let text = |name: &str| {
         let breakage = BREAKAGES.iter().find(|breakage| breakage.name == name);
-        let broken = breakage.map(|breakage| breakage.record(2_176_000));
+        let broken = breakage.map(|breakage| breakage.record(2_176_000).unwrap());
         let broken = broken.unwrap_or_else(|| panic!("no breakage {name}"));
         let check = check_setup(&broken.record, &broken.bench);
         (
@@ -162,7 +163,7 @@ fn keys_that_a_description_names_are_those_of_a_bench_file() {
     let breakage = BREAKAGES
         .iter()
         .find(|one| one.name == "standard g at another site");
-    let broken = breakage.map(|breakage| breakage.record(2_177_000));
+    let broken = breakage.map(|breakage| breakage.record(2_177_000).unwrap());
     let broken = broken.unwrap_or_else(|| panic!("a breakage"));
     let check = check_setup(&broken.record, &broken.bench);
     let words = check.findings[0].problem().description;
@@ -174,7 +175,7 @@ fn keys_that_a_description_names_are_those_of_a_bench_file() {
 #[test]
 fn what_is_mended_is_left_out_and_the_rest_stays() {
     let breakage = |name| BREAKAGES.iter().find(|breakage| breakage.name == name);
-    let broken = breakage("0 in one column").map(|b| b.record(2_175_000));
+    let broken = breakage("0 in one column").map(|b| b.record(2_175_000).unwrap());
     let broken = broken.unwrap_or_else(|| panic!("a breakage"));
     let usable = check_setup(&broken.record, &broken.bench).usable;
     let usable = usable.unwrap_or_else(|| panic!("a usable record"));
@@ -186,7 +187,7 @@ fn what_is_mended_is_left_out_and_the_rest_stays() {
             left == given
         });
     }
-    let broken = breakage("a jump of the attitude").map(|b| b.record(2_175_000));
+    let broken = breakage("a jump of the attitude").map(|b| b.record(2_175_000).unwrap());
     let broken = broken.unwrap_or_else(|| panic!("a breakage"));
     let check = check_setup(&broken.record, &broken.bench);
     let rows = check.findings[0].rows.clone().unwrap_or_default();
@@ -203,7 +204,7 @@ fn kinds(record: &Record, bench: &Bench) -> Vec<SetupKind> {
 /// Gravity turns by many steps of a converter between all rows of a short record.
 #[test]
 fn a_stuck_accelerometer_is_told_in_a_short_record() {
-    let simulation = sound(2_175_100);
+    let simulation = sound(2_175_100).unwrap();
     for rows in [30, 100, 145, 300] {
         for axis in 0..3 {
             let mut record = Record {
@@ -228,7 +229,7 @@ fn a_stuck_accelerometer_is_told_in_a_short_record() {
 
 #[test]
 fn rows_that_are_all_written_twice_are_told_from_the_first_on() {
-    let mut simulation = sound(2_175_101);
+    let mut simulation = sound(2_175_101).unwrap();
     let record = &mut simulation.record;
     for row in (1..record.len()).step_by(2) {
         record.accel_g[row] = record.accel_g[row - 1];

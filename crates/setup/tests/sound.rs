@@ -1,9 +1,10 @@
 //! Sound records of all sorts do not set the check off, and no record makes it panic.
+#![cfg(test)]
 
 use gyrocal_record::{Bench, Record};
 use gyrocal_setup::{SetupKind, check_setup};
 use gyrocal_statistics::deviates::Draw;
-use gyrocal_testkit::broken_setups::{large_effects, sound, varied_record, varied_scenario};
+use gyrocal_truth::faults::{large_effects, sound, varied_record, varied_scenario};
 
 const FIRST_SEED: u64 = 2_000_000;
 const RECORDS: u64 = 300;
@@ -12,12 +13,12 @@ const RECORDS: u64 = 300;
 fn sound_records_are_left_alone() {
     let alarms: Vec<u64> = (FIRST_SEED..FIRST_SEED + RECORDS)
         .filter(|seed| {
-            let mut scenario = varied_scenario(*seed);
+            let mut scenario = varied_scenario(*seed).unwrap();
             if seed % 2 == 1 {
                 let effects = large_effects(&scenario, &mut Draw::new(*seed, 4));
                 scenario.hidden.extend(effects);
             }
-            let simulation = varied_record(*seed, &scenario);
+            let simulation = varied_record(*seed, &scenario).unwrap();
             let check = check_setup(&simulation.record, &simulation.bench);
             !check.findings.is_empty() || check.usable.as_ref() != Some(&simulation.record)
         })
@@ -27,7 +28,7 @@ fn sound_records_are_left_alone() {
 }
 
 fn bench() -> Bench {
-    sound(1).bench
+    sound(1).unwrap().bench
 }
 
 #[test]
@@ -72,7 +73,7 @@ fn no_record_makes_it_panic() {
 
 #[test]
 fn pieces_of_a_record_are_judged_without_panic_and_without_alarm() {
-    let simulation = sound(2_000_900);
+    let simulation = sound(2_000_900).unwrap();
     for rows in [
         0, 1, 5, 11, 12, 13, 20, 36, 60, 120, 200, 361, 500, 721, 1000, 1441,
     ] {
@@ -98,7 +99,7 @@ fn thinned(record: &Record, stride: usize) -> Record {
 #[test]
 fn rows_far_apart_are_no_jumps() {
     for seed in 2_000_910..2_000_920 {
-        let simulation = sound(seed);
+        let simulation = sound(seed).unwrap();
         let interval_s = simulation.record.time_s[1] - simulation.record.time_s[0];
         for minutes in [20.0, 36.0, 45.0, 60.0, 90.0, 120.0] {
             let stride = (60.0 * minutes / interval_s) as usize;
@@ -116,7 +117,7 @@ fn rows_far_apart_are_no_jumps() {
 #[test]
 fn a_bias_of_one_accelerometer_is_no_gravity() {
     for seed in 2_000_920..2_000_940 {
-        let simulation = sound(seed);
+        let simulation = sound(seed).unwrap();
         for axis in 0..3 {
             let mut record = simulation.record.clone();
             for row in &mut record.accel_g {
@@ -142,7 +143,7 @@ fn a_bias_of_one_accelerometer_is_no_gravity() {
 
 #[test]
 fn random_damage_makes_no_panic() {
-    let simulation = sound(2_000_901);
+    let simulation = sound(2_000_901).unwrap();
     let mut random = Draw::new(2_000_901, 9);
     let odd = [f64::NAN, f64::INFINITY, 0.0, 1e308, -1e308, 1e-308, -999.0];
     for _ in 0..60 {

@@ -6,7 +6,7 @@ use gyrocal_statistics::StatisticsError;
 use gyrocal_statistics::allan::{
     NoisePart, NoiseType, allan_deviation, fit_noise, hadamard_deviation, octaves, total_deviation,
 };
-use gyrocal_testkit::sensor_noise::{Filter, SensorNoise};
+use gyrocal_truth::units::sensor_noise::{Filter, SensorNoise};
 
 /// Made by tests/data/allan_reference.py.
 const REFERENCE: &str = include_str!("data/allan_reference.csv");

@@ -6,17 +6,13 @@
 //!   Kalman filters of other packages, and times of a step.
 //! - `browser`: a headless browser for pages.
 //! - `contracts`: results of all commands against their published schemas.
-//! - `calibration`: dense least squares for short records, and signatures by finite differences of the
-//!   independent simulation.
-//! - `noise`: records with faulty noise.
-//! - `instruments`: a test set of formats and dialects of records, and logs of multi-position tests.
-//! - `sensor-noise`: rates of a gyro at rest with noise of known parts.
-//! - `setups`: records with gross errors of the set-up.
-//! - `strapdown`: records of strapdown units with the axes of their instruments.
+//! - `calibration`: dense least squares for short records.
+//! - `noise`: innovations of records with faulty noise.
+//! - `instruments`: a test set of formats and dialects of records.
 //! - `extended`: the controller of `examples/extended` against the catalogue.
 //!
 //! Each module has more than one user among tests, benches and `cargo figures`; support of a single test
-//! stays with that test. Helpers panic when the machine lacks something: that is how a test fails.
+//! stays with that test. What simulates records is in `gyrocal_truth`. Helpers panic when the machine lacks something: that is how a test fails.
 #![expect(
     clippy::unwrap_used,
     clippy::expect_used,
@@ -26,8 +22,6 @@
     reason = "a panic of a helper is how its test fails"
 )]
 
-#[cfg(feature = "setups")]
-pub mod broken_setups;
 #[cfg(feature = "browser")]
 pub mod browser;
 mod command;
@@ -50,18 +44,10 @@ pub mod noise_faults;
 mod own_terms;
 #[cfg(feature = "filters")]
 pub mod peer_filters;
-#[cfg(feature = "instruments")]
-pub mod position_test;
 #[cfg(feature = "filters")]
 pub mod rounding_errors;
-#[cfg(feature = "sensor-noise")]
-pub mod sensor_noise;
-#[cfg(feature = "calibration")]
-pub mod signature_differences;
 #[cfg(feature = "filters")]
 pub mod step_times;
-#[cfg(feature = "strapdown")]
-pub mod strapdown_unit;
 pub mod timing;
 mod tiny;
 mod tools;

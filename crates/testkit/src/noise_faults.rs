@@ -4,6 +4,7 @@ use gyrocal::{Discretisation, FactorisedPlatformFilter, Innovation};
 use gyrocal_calibration::{declared_attitude, filter_settings, run_factorised_filter};
 use gyrocal_diagnosis::{DeclaredNoise, Innovations};
 use gyrocal_record::{Bench, Record};
+use gyrocal_truth::faults::noise::quantised;
 use gyrocal_truth::{Hidden, Population, Term, simulate_with};
 
 /// Fault of the noise of a record.
@@ -48,27 +49,21 @@ pub fn faulty_record(
     let scenario = population.scenario(number);
     let sigma = scenario.accel_noise_g;
     let mut simulated = scenario.clone();
-    let mut hide = |id: &str, parameters: &[(&str, f64)]| {
-        simulated.hidden.push(Hidden::new(id, parameters).unwrap());
-    };
-    match fault {
-        Fault::None => {}
-        Fault::Quantised(step) => {
-            for axis in ["x", "y", "z"] {
-                hide(
-                    &format!("accel_{axis}.quantisation"),
-                    &[("lsb", step * sigma)],
-                );
-            }
-        }
+    let hide = |id: &str, parameters: &[(&str, f64)]| vec![Hidden::new(id, parameters).unwrap()];
+    simulated.hidden.extend(match fault {
+        Fault::Quantised(step) => quantised(step * sigma).unwrap().to_vec(),
         Fault::Outliers(fraction, size) => {
-            hide("accel.outliers", &[("fraction", fraction), ("size", size)]);
+            hide("accel.outliers", &[("fraction", fraction), ("size", size)])
         }
         Fault::Coloured(correlation) => {
-            hide("accel.coloured_noise", &[("correlation", correlation)]);
+            hide("accel.coloured_noise", &[("correlation", correlation)])
         }
+        Fault::None | Fault::Ratio(_) | Fault::GyroRatio(_) => Vec::new(),
+    });
+    match fault {
         Fault::Ratio(ratio) => simulated.accel_noise_g *= ratio,
         Fault::GyroRatio(ratio) => simulated.gyro_noise_deg_per_h *= ratio,
+        _ => {}
     }
     let simulation = simulate_with(&simulated, terms).unwrap();
     let outliers = simulation.truth.outliers.iter().enumerate();

@@ -61,16 +61,26 @@ impl GyroNoise {
 }
 
 impl Walk {
-    /// Advances by an interval and returns the mean over it. Mean and end have the joint distribution
-    /// of a Brownian motion: half of the increment, and an independent part of variance Δt/12.
+    /// Advances by an interval and returns the mean over it.
     fn next_deg_per_h(&mut self, interval_s: f64) -> [f64; 3] {
         let root_h = (interval_s / 3600.0).sqrt();
         let (increments, bridges) = (self.steps.three_normals(), self.steps.three_normals());
         core::array::from_fn(|gyro| {
             let sigma = self.size_deg_per_h_per_sqrt_h[gyro] * root_h;
-            let before = self.now_deg_per_h[gyro];
-            self.now_deg_per_h[gyro] += sigma * increments[gyro];
-            before + sigma * (0.5 * increments[gyro] + bridges[gyro] / 12.0_f64.sqrt())
+            let (mean, end) = walked(
+                self.now_deg_per_h[gyro],
+                sigma,
+                [increments[gyro], bridges[gyro]],
+            );
+            self.now_deg_per_h[gyro] = end;
+            mean
         })
     }
+}
+
+/// Mean over an interval and end of a Brownian motion that changes by `sigma` in it, from two normal deviates. They
+/// have its joint distribution: the mean is half of the increment, and an independent part of variance Δt/12.
+pub(crate) fn walked(before: f64, sigma: f64, [increment, bridge]: [f64; 2]) -> (f64, f64) {
+    let mean = before + sigma * (0.5 * increment + bridge / 12.0_f64.sqrt());
+    (mean, before + sigma * increment)
 }

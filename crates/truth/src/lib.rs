@@ -52,7 +52,9 @@
 //! - [`euler_rule`]: the same by the paper's rule, explicit Euler steps of the three angles.
 //! - [`Platform::specific_force_g`]: outputs of ideal accelerometers at given times.
 //! - [`Population`]: random scenarios.
-//! - `plant`, a module behind the feature of that name: simulators of the example plants.
+//! - Modules behind features of their names: `plant`, simulators of the example plants; `faults`, records with gross
+//!   errors, noise that is not normal, and effects that no catalogue holds; `units`, noise and tests of units at rest,
+//!   records of strapdown units.
 //!
 //! The same scenario gives the same record, bit for bit: random numbers are ChaCha with one stream for each
 //! seed and purpose, so that hiding an effect leaves all other random numbers as they are; sine,
@@ -70,6 +72,8 @@ mod earth_rotation;
 mod effect;
 mod error;
 mod euler_rule;
+#[cfg(feature = "faults")]
+pub mod faults;
 mod gyro_noise;
 mod hidden;
 mod hidden_file;
@@ -88,6 +92,8 @@ mod sensing;
 mod simulation;
 mod temperature;
 mod term;
+#[cfg(feature = "units")]
+pub mod units;
 
 pub use attitude::Attitude;
 pub use coefficients::Coefficients;

@@ -7,7 +7,7 @@ use gyrocal::Drift;
 use gyrocal_extended::unit::{PARAMETERS, Unit};
 use gyrocal_extended::{UnitFilter, unit_filter};
 use gyrocal_testkit::extended_comparison::{attitude, settings};
-use gyrocal_testkit::strapdown_unit::{StrapdownUnit, UnitRun};
+use gyrocal_truth::units::strapdown::{StrapdownUnit, UnitRun};
 
 const STEP_S: f64 = 60.0;
 /// Two days.

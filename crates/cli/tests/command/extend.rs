@@ -1,7 +1,7 @@
 //! `gyrocal extend`: from findings, or a list of effects, to a model file.
 
 use gyrocal_record::{KnownEffect, ModelFile, Standing};
-use gyrocal_testkit::strapdown_unit::UnitRun;
+use gyrocal_truth::units::strapdown::UnitRun;
 use serde_json::{Value, json};
 
 use crate::folder::Folder;

@@ -6,7 +6,7 @@ use gyrocal_calibration::{GyroAxes, Run, declared_attitude, filter_settings};
 use gyrocal_diagnosis::{DiagnoseOptions, fit_effects};
 use gyrocal_extended::unit::{PARAMETERS, Unit};
 use gyrocal_extended::{UnitFilter, unit_filter};
-use gyrocal_testkit::strapdown_unit::{StrapdownUnit, UnitRun};
+use gyrocal_truth::units::strapdown::{StrapdownUnit, UnitRun};
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 /// Coefficients, then the parameters of the effects by their ids.

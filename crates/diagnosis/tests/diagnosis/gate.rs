@@ -7,7 +7,7 @@ use gyrocal_diagnosis::{DiagnoseOptions, Gate, diagnose};
 use gyrocal_record::RecordFile;
 use gyrocal_setup::{PlatformKind, check_setup};
 use gyrocal_statistics::deviates::Draw;
-use gyrocal_testkit::broken_setups::leave_angles_out;
+use gyrocal_truth::faults::leave_angles_out;
 use gyrocal_truth::{Coefficients, InitialAttitude, Scenario, Simulation, simulate};
 
 /// A record without angles, with coefficients from the prior of 1 deg/h.

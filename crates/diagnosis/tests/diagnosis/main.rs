@@ -12,6 +12,5 @@ mod noise;
 mod outliers;
 mod records;
 mod shapes;
-mod signatures;
 mod strapdown;
 mod temperature;

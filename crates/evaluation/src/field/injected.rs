@@ -1,23 +1,20 @@
 //! Makers of records with effects: of the catalogue, and drifts that it does not hold.
 
 use core::f64::consts::TAU;
+use std::sync::Arc;
 
 use gyrocal_record::AXES;
 use gyrocal_statistics::deviates::Draw;
+use gyrocal_truth::faults::{Series, UnlistedEffect};
 use gyrocal_truth::{Hidden, Moment, Scenario, Temperature, simulate};
 
 use super::records::{EDITS, Result, axis_of, between, clean, of};
 use crate::catalogue::effect_of;
-use crate::error::EvaluationError;
-use crate::injection::{inject_into, nominal_fit};
-use crate::out_of_catalogue::UnlistedRecord;
-use crate::unlisted::{Series, UnlistedEffect};
+use crate::injection::{first_of, inject_into, nominal_fit};
+use crate::out_of_catalogue::{MAX_DRAWS, UnlistedRecord};
 
 /// Purpose of the random stream of a turn.
 const TURNS: u64 = 34;
-
-/// Draws of effects of which a record must show one.
-const MAX_DRAWS: usize = 8;
 
 /// Largest cosine of the angle between the signatures of effects of one record.
 const LARGEST_COSINE: f64 = 0.95;
@@ -37,40 +34,27 @@ fn with_effects(
     let clean = simulate(&scenario)?;
     let fitted = nominal_fit(&clean)?;
     let random = &mut Draw::new(seed, EDITS);
-    for _ in 0..MAX_DRAWS {
+    let (axis, mut injected) = first_of(MAX_DRAWS, strengths[1], |_| {
         let axis = axis_of(random);
         let own = format!("_{}.", AXES[axis]);
         let pair = ["_xy.", "_yz.", "_xz."][axis];
         let strength = random.log_uniform(strengths);
-        let effects = draw(random).into_iter();
-        let effects = effects.filter_map(|(id, shape)| {
-            Some((
-                effect_of(&id.replace("_i.", &own).replace("_ij.", pair))?,
-                shape,
-            ))
+        let effects = draw(random).into_iter().filter_map(|(id, shape)| {
+            let id = id.replace("_i.", &own).replace("_ij.", pair);
+            Some((effect_of(&id)?, shape))
         });
         let effects: Vec<_> = effects.collect();
         let injected = inject_into(&clean, &fitted, &effects, strength, LARGEST_COSINE, random)?;
-        let Some(mut injected) = injected else {
-            continue;
-        };
-        if let ([first, second], true) = (&mut injected[..], back) {
-            second.sizes = first.sizes.iter().map(|size| -size).collect();
-        }
-        scenario.hidden = further.to_vec();
-        for one in &injected {
-            scenario.hidden.push(one.to_hidden()?);
-        }
-        return Ok(of(simulate(&scenario)?, Some(axis)));
+        Ok(injected.map(|injected| (axis, injected)))
+    })?;
+    if let ([first, second], true) = (&mut injected[..], back) {
+        second.sizes = first.sizes.iter().map(|size| -size).collect();
     }
-    Err(not_injectable(strengths[1]))
-}
-
-fn not_injectable(strength: f64) -> EvaluationError {
-    EvaluationError::NotInjectable {
-        tried: MAX_DRAWS,
-        strength,
+    scenario.hidden = further.to_vec();
+    for one in &injected {
+        scenario.hidden.push(one.to_hidden()?);
     }
+    Ok(of(simulate(&scenario)?, Some(axis)))
 }
 
 /// Steps of 18 to 60 sigma; `after` are ranges of the share of the record between each and the one before.
@@ -147,14 +131,12 @@ fn with_drift<F: Fn(&Moment) -> f64 + Send + Sync + 'static>(
     unit: impl Fn(&mut Draw) -> F,
 ) -> Result {
     let random = &mut Draw::new(seed, EDITS);
-    for _ in 0..MAX_DRAWS {
+    first_of(MAX_DRAWS, strength, |_| {
         let axis = axis_of(random);
-        let effect = UnlistedEffect::drift_of("drift", axis, unit(random));
-        if let Some(found) = UnlistedRecord::scaled(scenario, effect, strength)? {
-            return Ok(of(found.with, Some(axis)));
-        }
-    }
-    Err(not_injectable(strength))
+        let effect = UnlistedEffect::of("drift", true, axis, Arc::new(unit(random)));
+        let record = UnlistedRecord::scaled(scenario, effect, strength)?;
+        Ok(record.map(|record| of(record.with, Some(axis))))
+    })
 }
 
 /// A drift that is there for some times of one to three hours; 20 sigma, several 30.

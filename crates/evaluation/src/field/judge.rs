@@ -8,8 +8,7 @@ use gyrocal_plant::answer::Diagnosis as PlantDiagnosis;
 use gyrocal_record::AXES;
 use serde::{Deserialize, Serialize};
 
-use super::FieldOutcome;
-use super::right::{Right, SEVERAL, Silent, UNLISTED};
+use super::right::{Names, Right, SEVERAL, Silent, UNLISTED};
 use crate::catalogue::{effect_family, effect_of, same_or_equivalent};
 
 /// How an answer compares with the right one. The cases exclude each other.
@@ -26,31 +25,6 @@ pub enum Judgement {
     PhysicalAlone,
 }
 
-/// What was told, in short.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Answer {
-    /// The right thing, as an error of the set-up of this kind.
-    SetUp(String),
-    /// The right thing, as the name of this finding.
-    Named(String),
-    /// The right thing, in the confidence set of this finding.
-    InSet(String),
-    /// Nothing.
-    Silent,
-    /// A physical cause that the record does not have.
-    Physical {
-        /// The effect.
-        effect: String,
-        /// Its p-value.
-        p_value: f64,
-    },
-    /// Other names.
-    Other(Vec<String>),
-    /// No diagnosis, with its error.
-    Error(String),
-}
-
 /// What a diagnosis told.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Told {
@@ -63,23 +37,42 @@ pub(super) struct Told {
 pub(super) struct Name {
     pub(super) id: String,
     pub(super) set: Vec<String>,
-    /// `None` of what is no finding.
-    pub(super) p_value: Option<f64>,
     /// Whether it is a cause within the instrument, and neither noise nor an error of the set-up.
     pub(super) is_physical: bool,
 }
 
 impl Told {
-    pub(super) fn of(found: Result<&DiagnosisResult, &DiagnosisError>) -> Self {
+    pub(super) fn of(found: Result<DiagnosisResult, DiagnosisError>) -> Self {
         match found {
-            Ok(result) => Self::of_result(result),
-            Err(DiagnosisError::Setup { result }) => Self::of_result(result),
-            Err(DiagnosisError::OfRecord { source, .. }) => Self::of(Err(source)),
+            Ok(result) => Self::of_result(&result),
+            Err(DiagnosisError::Setup { result }) => Self::of_result(&result),
+            Err(DiagnosisError::OfRecord { source, .. }) => Self::of(Err(*source)),
             Err(DiagnosisError::SeveralPlatforms { .. }) => Self::set_up(SEVERAL),
-            Err(error) => Self {
-                error: Some(error.to_string()),
-                ..Self::default()
-            },
+            Err(error) => Self::failed(&error),
+        }
+    }
+
+    pub(super) fn of_plant(found: Result<PlantDiagnosis, PlantError>) -> Self {
+        let found = match found {
+            Ok(found) => found,
+            Err(error) => return Self::failed(&error),
+        };
+        let named = found.findings.iter().map(|one| {
+            let rivals = one.rivals.iter().map(|(id, _)| id);
+            Name {
+                id: one.effect.clone(),
+                set: rivals.chain(&one.equivalents).cloned().collect(),
+                is_physical: true,
+            }
+        });
+        let stated = found.findings.iter().filter_map(|one| one.none_of_these);
+        Self::with_unlisted(named.collect(), !found.unexplained.is_empty(), stated)
+    }
+
+    fn failed(error: &dyn core::error::Error) -> Self {
+        Self {
+            error: Some(error.to_string()),
+            ..Self::default()
         }
     }
 
@@ -94,15 +87,11 @@ impl Told {
     }
 
     fn of_result(result: &DiagnosisResult) -> Self {
-        let problems = result
-            .setup
-            .iter()
-            .map(|problem| Name::plain(&problem.kind));
-        let names = problems
-            .chain(result.findings.iter().map(Name::of))
-            .collect();
+        let problems = result.setup.iter();
+        let problems = problems.map(|problem| Name::plain(&problem.kind));
+        let names = problems.chain(result.findings.iter().map(Name::of));
         let stated = result.causes().filter_map(|cause| cause.none_of_these);
-        Self::with_unlisted(names, result.is_unexplained(), stated)
+        Self::with_unlisted(names.collect(), result.is_unexplained(), stated)
     }
 
     /// As `RecordScore::tells_of_another`.
@@ -117,26 +106,10 @@ impl Told {
         Self::named(names)
     }
 
-    pub(super) fn of_plant(found: Result<&PlantDiagnosis, &PlantError>) -> Self {
-        match found {
-            Ok(found) => {
-                let named = found.findings.iter().map(|one| {
-                    let rivals = one.rivals.iter().map(|(id, _)| id);
-                    Name {
-                        id: one.effect.clone(),
-                        set: rivals.chain(&one.equivalents).cloned().collect(),
-                        p_value: Some(one.p_value),
-                        is_physical: true,
-                    }
-                });
-                let stated = found.findings.iter().filter_map(|one| one.none_of_these);
-                Self::with_unlisted(named.collect(), !found.unexplained.is_empty(), stated)
-            }
-            Err(error) => Self {
-                error: Some(error.to_string()),
-                ..Self::default()
-            },
-        }
+    /// The names, or the error.
+    pub(super) fn words(self) -> Vec<String> {
+        let names = self.names.into_iter().map(|name| name.id);
+        names.chain(self.error).collect()
     }
 }
 
@@ -145,13 +118,8 @@ impl Name {
         Self {
             id: id.to_owned(),
             set: Vec::new(),
-            p_value: None,
             is_physical: false,
         }
-    }
-
-    fn is_set_up(&self) -> bool {
-        self.p_value.is_none() && self.id != UNLISTED
     }
 
     fn of(finding: &Finding) -> Self {
@@ -160,7 +128,6 @@ impl Name {
         Self {
             id: finding.effect.clone(),
             set: alternatives.chain(equivalents).cloned().collect(),
-            p_value: Some(finding.p_value),
             is_physical: is_physical(&finding.effect),
         }
     }
@@ -177,7 +144,7 @@ pub(super) fn is_physical(id: &str) -> bool {
 }
 
 /// Whether an id is of a list of names; `i` of a family is `axis`, if that is given, but of noise any.
-fn is_of(id: &str, names: &[&str], axis: Option<usize>) -> bool {
+fn is_of(id: &str, names: Names, axis: Option<usize>) -> bool {
     let is_noise = effect_of(id).is_some_and(|effect| matches!(effect.kind, EffectKind::Noise(_)));
     names.iter().any(|name| match axis {
         Some(axis) if name.contains("_i.") && !is_noise => {
@@ -188,77 +155,46 @@ fn is_of(id: &str, names: &[&str], axis: Option<usize>) -> bool {
 }
 
 /// Judges what was told of a record whose deviation is on `axis`; `faint` if it shows less than it must.
-pub(super) fn judge(right: &Right, axis: Option<usize>, faint: bool, told: &Told) -> FieldOutcome {
-    let names = &told.names;
-    let by_name = |at: usize, list: &[&str]| is_of(&names[at].id, list, axis);
-    let by_set = |at: usize, list: &[&str]| names[at].set.iter().any(|id| is_of(id, list, axis));
-    let mut free: Vec<usize> = (0..names.len()).collect();
-    // Each is told by a finding of its own: by its name, or else by its set.
-    let mut tellers: Vec<Option<usize>> = vec![None; right.each.len()];
-    for named in [true, false] {
-        for (teller, list) in tellers.iter_mut().zip(right.each) {
-            let tells = |at: &usize| {
-                if named {
-                    by_name(*at, list)
-                } else {
-                    by_set(*at, list)
-                }
-            };
-            let place = free.iter().position(tells);
-            *teller = teller.or_else(|| place.map(|place| free.remove(place)));
-        }
-    }
-    let pairs = || tellers.iter().zip(right.each);
-    let mut is_whole = !right.each.is_empty() && tellers.iter().all(Option::is_some);
-    let mut is_named = pairs().all(|(at, list)| at.is_some_and(|at| by_name(at, list)));
-    let mut teller = tellers.iter().flatten().next().copied();
-    if let Some(place) = free.iter().position(|at| by_name(*at, right.whole)) {
-        teller = Some(free.remove(place));
-        (is_whole, is_named) = (true, true);
-    }
-    free.retain(|at| !by_name(*at, right.beside));
-    let beside: Vec<String> = free.iter().map(|at| names[*at].id.clone()).collect();
-    let is_near = free.iter().any(|at| by_name(*at, right.near));
-    let physical = free
-        .iter()
-        .map(|at| &names[*at])
-        .find(|name| name.is_physical && !is_of(&name.id, right.near, axis));
+pub(super) fn judge(right: &Right, axis: Option<usize>, faint: bool, told: &Told) -> Judgement {
     let may_be_silent = match right.silent {
         Silent::Never => false,
         Silent::Faint => faint,
         Silent::Always => true,
     };
-    let only_unlisted = !free.is_empty() && free.iter().all(|at| names[*at].id == UNLISTED);
-    let judgement = match (teller, physical, &told.error) {
-        (_, _, Some(_)) if may_be_silent => Judgement::Wrong,
-        (_, _, Some(_)) => Judgement::NotSettled,
-        (Some(_), ..) if is_whole && free.is_empty() && (is_named || right.in_set) => {
-            Judgement::Right
-        }
-        (Some(_), Some(_), _) if !is_whole => Judgement::Wrong,
-        (Some(_), ..) => Judgement::NotSettled,
-        (None, Some(_), _) => Judgement::PhysicalAlone,
-        (None, None, _) if free.is_empty() && may_be_silent => Judgement::Right,
-        (None, None, _) if is_near || only_unlisted => Judgement::NotSettled,
-        (None, None, _) => Judgement::Wrong,
+    if told.error.is_some() {
+        return match may_be_silent {
+            true => Judgement::Wrong,
+            false => Judgement::NotSettled,
+        };
+    }
+    let by_name = |name: &Name, list: Names| is_of(&name.id, list, axis);
+    let by_set = |name: &Name, list: Names| name.set.iter().any(|id| is_of(id, list, axis));
+    let mut free: Vec<&Name> = told.names.iter().collect();
+    let mut takes = |list: Names, tells: &dyn Fn(&Name, Names) -> bool| {
+        let place = free.iter().position(|name| tells(name, list));
+        place.map(|place| free.remove(place)).is_some()
     };
-    let id = |at: usize| names[at].id.clone();
-    let answer = match (teller, physical, &told.error) {
-        (_, _, Some(error)) => Answer::Error(error.clone()),
-        (Some(at), ..) if names[at].is_set_up() => Answer::SetUp(id(at)),
-        (Some(at), ..) if is_named => Answer::Named(id(at)),
-        (Some(at), ..) => Answer::InSet(id(at)),
-        (None, Some(name), _) => Answer::Physical {
-            effect: name.id.clone(),
-            p_value: name.p_value.unwrap_or(1.0),
-        },
-        (None, None, _) if names.is_empty() => Answer::Silent,
-        (None, None, _) => Answer::Other(names.iter().map(|name| name.id.clone()).collect()),
-    };
-    FieldOutcome {
-        judgement,
-        answer,
-        beside,
-        strength: None,
+    // Each is told by a finding of its own: by its name, or else by its set.
+    let mut left = right.each.to_vec();
+    left.retain(|list| !takes(list, &by_name));
+    let is_named = left.is_empty();
+    left.retain(|list| !takes(list, &by_set));
+    let at_once = takes(right.whole, &by_name);
+    let is_told = at_once || left.len() < right.each.len();
+    let is_whole = at_once || (left.is_empty() && is_told);
+    let is_named = at_once || is_named || right.in_set;
+    free.retain(|name| !by_name(name, right.beside));
+    let is_false = |name: &&Name| name.is_physical && !by_name(name, right.near);
+    let is_physical = free.iter().any(is_false);
+    let is_near = free.iter().any(|name| by_name(name, right.near));
+    let only_unlisted = !free.is_empty() && free.iter().all(|name| name.id == UNLISTED);
+    match (is_told, is_physical) {
+        (true, _) if is_whole && is_named && free.is_empty() => Judgement::Right,
+        (true, true) if !is_whole => Judgement::Wrong,
+        (true, _) => Judgement::NotSettled,
+        (false, true) => Judgement::PhysicalAlone,
+        (false, false) if free.is_empty() && may_be_silent => Judgement::Right,
+        (false, false) if is_near || only_unlisted => Judgement::NotSettled,
+        (false, false) => Judgement::Wrong,
     }
 }

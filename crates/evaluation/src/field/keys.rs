@@ -11,21 +11,19 @@ use super::right::{BENCH, Right, Silent};
 use crate::error::EvaluationError;
 
 /// A key of a bench file, or a column of a record, with a wrong number.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WrongKey {
+pub(super) struct WrongKey {
     /// Table and key of the bench file, or the name of a column, which has no dot.
-    pub key: &'static str,
+    pub(super) key: &'static str,
     /// How the number is wrong.
-    pub change: Change,
+    pub(super) change: Change,
     /// By how much, in the unit of the key.
-    pub amount: f64,
-    /// The answer that is right for it.
-    pub right: &'static Right,
+    pub(super) amount: f64,
+    pub(super) right: &'static Right,
 }
 
 /// How a number is wrong. All numbers of a list are, if no place is given.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Change {
+#[derive(Clone, Copy)]
+pub(super) enum Change {
     /// It is more or less by the amount, with equal probability.
     Add,
     /// The same of the number at a place of a list, counted from 0.
@@ -96,20 +94,20 @@ const TABLE: &[(&str, Change, &[f64], &Right)] = &[
 ];
 
 /// Keys without a row, with the reason.
-pub const EXEMPT: &[(&str, &str)] = &[
+#[cfg(test)]
+pub(super) const EXEMPT: &[(&str, &str)] = &[
     ("gimbal_limits_deg.x", GIMBALS),
     ("gimbal_limits_deg.y", GIMBALS),
     ("gimbal_limits_deg.z", GIMBALS),
 ];
+#[cfg(test)]
 const GIMBALS: &str = "read by the design of experiments and by no diagnosis";
 
 /// A record and its bench description, or the refusal of its reader.
 type WithBench = (Record, Result<Bench, String>);
 
 impl WrongKey {
-    /// All wrong keys.
-    #[must_use]
-    pub fn all() -> Vec<Self> {
+    pub(super) fn all() -> Vec<Self> {
         let rows = TABLE.iter();
         let of = |&(key, change, amounts, right): &(_, _, &'static [f64], _)| {
             amounts.iter().map(move |amount| Self {
@@ -123,8 +121,7 @@ impl WrongKey {
     }
 
     /// Key and change.
-    #[must_use]
-    pub fn name(&self) -> String {
+    pub(super) fn name(&self) -> String {
         let Self { key, amount, .. } = self;
         match self.change {
             Add => format!("{key} +- {amount}"),

@@ -1,16 +1,17 @@
 //! Kinds of records, with the right answer of each.
 
+use gyrocal_truth::faults::noise::student;
+use gyrocal_truth::faults::rows::{exchange_axes, jump_clock};
+
 use super::injected::*;
 use super::records::*;
 use super::right::{Right, SEVERAL, Silent, UNLISTED};
 
 /// A kind of records.
-#[derive(Clone, Copy, Debug)]
-pub struct FieldKind {
+pub(super) struct FieldKind {
     /// What the records are, in words.
-    pub name: &'static str,
-    /// The answer that is right for them.
-    pub right: &'static Right,
+    pub(super) name: &'static str,
+    pub(super) right: &'static Right,
     pub(super) make: fn(u64) -> Result,
 }
 
@@ -72,13 +73,13 @@ const fn kind(name: &'static str, right: &'static Right, make: fn(u64) -> Result
 impl FieldKind {
     /// All kinds. New ones come last: places are the seeds of the records.
     #[rustfmt::skip]
-    pub const ALL: &[Self] = &[
+    pub(super) const ALL: &[Self] = &[
         // sampling
-        kind("rows 1 to 30 min apart, a gap of a tenth", &NONE, |seed| irregular(seed, 0.0)),
-        kind("the same, up to 30 % of the values missing", &NONE, |seed| irregular(seed, 0.3)),
-        kind("one bad value among 4 h of missing ones", &OUTLIERS, one_bad_value),
-        kind("a third of one axis missing", &NONE, third_missing),
-        kind("means of ten minutes", &MEANS, means),
+        kind("rows 1 to 30 min apart, a gap of a tenth", &NONE, |seed| broken(seed, |b| irregular(b, 0.0))),
+        kind("the same, up to 30 % of the values missing", &NONE, |seed| broken(seed, |b| irregular(b, 0.3))),
+        kind("one bad value among 4 h of missing ones", &OUTLIERS, |seed| broken(seed, one_bad_value)),
+        kind("a third of one axis missing", &NONE, |seed| broken(seed, third_missing)),
+        kind("means of eleven minutes", &MEANS, means),
         kind("6 hours", &NONE, |seed| plain(seed, |s| s.duration_s = 21_600.0)),
         kind("28 days at 10 min", &NONE, |seed| {
             plain(seed, |s| (s.interval_s, s.duration_s) = (600.0, 28.0 * 86_400.0))
@@ -108,15 +109,17 @@ impl FieldKind {
         // accelerometers
         kind("scale, bias and axis of an accelerometer", &ACCELEROMETER, accelerometer),
         kind("an accelerometer clipped before noise of t4", &CLIPPED, clipped),
-        kind("noise of t2.5", &OUTLIERS, |seed| noisy(seed, |random, _| student(random, 2.5))),
+        kind("noise of t3", &OUTLIERS, |seed| noisy(seed, |random, _| student(random, 3))),
         kind("noise that grows threefold", &LOUD, |seed| {
             noisy(seed, |random, share| (1.0 + 2.0 * share) * random.normal())
         }),
         kind("a least significant bit of 20 sigma", &COARSE, coarse_bits),
         // handling
-        kind("two channels exchanged midway", &AXES, exchanged),
-        kind("the clock jumps by 2 s", &CLOCK, |seed| clock_jump(seed, 2.0)),
-        kind("the clock jumps by 3600 s", &CLOCK_JUMP, |seed| clock_jump(seed, 3600.0)),
+        kind("two channels exchanged midway", &AXES, |seed| {
+            broken(seed, |b| exchange_axes(b, b.record.len() / 2))
+        }),
+        kind("the clock jumps by 2 s", &CLOCK, |seed| broken(seed, |b| jump_clock(b, [2.0; 2]))),
+        kind("the clock jumps by 3600 s", &CLOCK_JUMP, |seed| broken(seed, |b| jump_clock(b, [3600.0; 2]))),
         kind("the clock 50 ppm fast, jitter of 0.3 s", &CLOCK_RATE, clock_rate),
         kind("a knock of 5 to 20 deg", &KNOCK, |seed| knock(seed, [5.0, 20.0], None)),
         kind("a knock of 0.4 deg and a ramp", &KNOCK_AND_RAMP, |seed| knock(seed, [0.4, 0.4], Some(20.0))),

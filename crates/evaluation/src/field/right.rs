@@ -4,25 +4,25 @@
 /// (`accel_i.noise`), which stands for its exact equivalents too; the kind of an error of the set-up (`latitude`);
 /// `bench`, a refusal by the reader of the bench file; `several-platforms`; and `unlisted`, which is said by
 /// residuals that are not white or a probability above a half of a cause outside of the catalogue.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Right {
+#[derive(Clone, Copy)]
+pub(super) struct Right {
     /// What the record has: each is told by a name of one of these lists. Nothing, if there are none.
-    pub each: &'static [&'static [&'static str]],
+    pub(super) each: &'static [Names],
     /// Names that tell all of it at once.
-    pub whole: &'static [&'static str],
+    pub(super) whole: Names,
     /// Names that are not false, but not the answer either.
-    pub near: &'static [&'static str],
+    pub(super) near: Names,
     /// Names that may be told beside.
-    pub beside: &'static [&'static str],
+    pub(super) beside: Names,
     /// Whether it is enough that confidence sets hold it; otherwise findings have its names.
-    pub in_set: bool,
+    pub(super) in_set: bool,
     /// Whether it may be left untold.
-    pub silent: Silent,
+    pub(super) silent: Silent,
 }
 
 /// Records of which nothing need be told.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Silent {
+#[derive(Clone, Copy)]
+pub(super) enum Silent {
     /// None.
     Never,
     /// Those that show less than [`VISIBLE`].
@@ -32,17 +32,18 @@ pub enum Silent {
 }
 
 /// Strength from which on a wrong number must be told: the root of twice the log-likelihood that it costs.
-pub const VISIBLE: f64 = 8.0;
+pub(super) const VISIBLE: f64 = 8.0;
 
 pub(super) const UNLISTED: &str = "unlisted";
 pub(super) const BENCH: &str = "bench";
 pub(super) const SEVERAL: &str = "several-platforms";
 
-type Names = &'static [&'static str];
+/// Names of which one is enough.
+pub(super) type Names = &'static [&'static str];
 
 impl Right {
     /// Nothing is to be told.
-    pub const NOTHING: Self = Self {
+    pub(super) const NOTHING: Self = Self {
         each: &[],
         whole: &[],
         near: &[],
@@ -84,17 +85,13 @@ impl Right {
     }
 
     /// The same in words.
-    #[must_use]
-    pub fn words(&self) -> String {
+    pub(super) fn words(&self) -> String {
         if self.each.is_empty() {
             return "nothing".to_owned();
         }
         let each: Vec<String> = self.each.iter().map(|names| names.join(" or ")).collect();
-        let whole: String = self
-            .whole
-            .iter()
-            .map(|name| format!(", or {name}"))
-            .collect();
+        let whole = self.whole.iter().map(|name| format!(", or {name}"));
+        let whole: String = whole.collect();
         let place = if self.in_set { ", in a set" } else { "" };
         let silence = match self.silent {
             Silent::Never => String::new(),

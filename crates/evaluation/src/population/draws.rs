@@ -3,12 +3,14 @@
 use gyrocal::effect::EffectKind;
 use gyrocal::generated::catalogue::parameters_index;
 use gyrocal::{EFFECTS, Effect};
+use gyrocal_calibration::NoiseModel;
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{Scenario, simulate};
 
 use crate::error::EvaluationError;
 use crate::injection::{
-    InjectedEffect, MAX_DRAWS, draw_shape, inject, inject_into, nominal_fit, testable_effects,
+    InjectedEffect, MAX_DRAWS, draw_shape, first_of, inject_into, inject_one_of, nominal_fit,
+    testable_effects,
 };
 
 /// Two effects are injected together if the cosine between their signatures is less.
@@ -59,17 +61,15 @@ pub(super) fn single(seed: u64, scenario: &Scenario, strength: f64, random: &mut
     let effects = schedule(&testable_effects(scenario));
     let clean = simulate(scenario)?;
     let fitted = nominal_fit(&clean)?;
-    for attempt in 0..MAX_DRAWS {
+    let injected = first_of(MAX_DRAWS, strength, |attempt| {
         let effect = match attempt {
             0 => effects[((seed as f64 * EVENLY).fract() * effects.len() as f64) as usize],
             _ => *random.one_of(&effects),
         };
         let with_shape = [(effect, draw_shape(effect, scenario, random))];
-        if let Some(injected) = inject_into(&clean, &fitted, &with_shape, strength, 1.0, random)? {
-            return Ok(with_strength(injected, strength));
-        }
-    }
-    not_injectable(strength)
+        inject_into(&clean, &fitted, &with_shape, strength, 1.0, random)
+    })?;
+    Ok(with_strength(injected, strength))
 }
 
 /// Two effects that are not exact equivalents and whose signatures are not close.
@@ -77,19 +77,16 @@ pub(super) fn pair(scenario: &Scenario, strength: f64, random: &mut Draw) -> Dra
     let effects = testable_effects(scenario);
     let clean = simulate(scenario)?;
     let fitted = nominal_fit(&clean)?;
-    for _ in 0..MAX_DRAWS {
+    let injected = first_of(MAX_DRAWS, strength, |_| {
         let one = *random.one_of(&effects);
         let other = *random.one_of(&effects);
         if one.id == other.id || one.equivalents.contains(&other.id) {
-            continue;
+            return Ok(None);
         }
         let both = [one, other].map(|effect| (effect, draw_shape(effect, scenario, random)));
-        let injected = inject_into(&clean, &fitted, &both, strength, LARGEST_COSINE, random)?;
-        if let Some(injected) = injected {
-            return Ok(with_strength(injected, strength));
-        }
-    }
-    not_injectable(strength)
+        inject_into(&clean, &fitted, &both, strength, LARGEST_COSINE, random)
+    })?;
+    Ok(with_strength(injected, strength))
 }
 
 /// One of the effects that a condition selects.
@@ -100,14 +97,9 @@ pub(super) fn one_of(
     random: &mut Draw,
 ) -> Drawn {
     let effects: Vec<&'static Effect> = EFFECTS.iter().filter(|effect| selects(effect)).collect();
-    for _ in 0..MAX_DRAWS {
-        let effect = *random.one_of(&effects);
-        let with_shape = (effect, draw_shape(effect, scenario, random));
-        if let Some(injected) = inject(scenario, &[with_shape], strength, 1.0, random)? {
-            return Ok(with_strength(injected, strength));
-        }
-    }
-    not_injectable(strength)
+    let noise = NoiseModel::default();
+    let (_, one) = inject_one_of(&effects, scenario.clone(), &noise, strength, random)?;
+    Ok(vec![(one, strength)])
 }
 
 /// A rotation of the platform about the vertical at the first row.
@@ -130,13 +122,6 @@ pub(super) fn azimuth(scenario: &Scenario, random: &mut Draw) -> Drawn {
 
 fn with_strength(injected: Vec<InjectedEffect>, strength: f64) -> Vec<(InjectedEffect, f64)> {
     injected.into_iter().map(|one| (one, strength)).collect()
-}
-
-fn not_injectable(strength: f64) -> Drawn {
-    Err(EvaluationError::NotInjectable {
-        tried: MAX_DRAWS,
-        strength,
-    })
 }
 
 #[cfg(test)]

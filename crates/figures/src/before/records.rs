@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use gyrocal_testkit::strapdown_unit::UnitRun;
 use gyrocal_truth::plant::{Kind, Setting, simulate, with_strength};
+use gyrocal_truth::units::strapdown::UnitRun;
 
 use super::results::ran;
 use crate::any_plant::loaded;

@@ -29,8 +29,7 @@ pub(crate) const DIAGNOSIS: &[&str] = &[
     "crates/truth",
     "crates/evaluation",
 ];
-pub(crate) const INSTRUMENTS: &[&str] =
-    &["crates/instruments", "crates/diagnosis", "crates/testkit"];
+pub(crate) const INSTRUMENTS: &[&str] = &["crates/instruments", "crates/diagnosis", "crates/truth"];
 pub(crate) const PLANTS: &[&str] = &[
     "crates/plant",
     "crates/truth",

@@ -4,7 +4,7 @@ use gyrocal_evaluation::Statistic;
 use gyrocal_statistics::allan::{NoiseFit, NoisePart, allan_deviation, fit_noise, octaves};
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_statistics::{NORMAL_97_5, StatisticsError};
-use gyrocal_testkit::sensor_noise::{Filter, SensorNoise};
+use gyrocal_truth::units::sensor_noise::{Filter, SensorNoise};
 use serde::{Deserialize, Serialize};
 
 use super::logs;

@@ -5,7 +5,7 @@ use gyrocal_instruments::{InstrumentError, Log};
 use gyrocal_record::AXES;
 use gyrocal_statistics::NORMAL_97_5;
 use gyrocal_statistics::deviates::Draw;
-use gyrocal_testkit::position_test::vector;
+use gyrocal_truth::units::position_test::vector;
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 

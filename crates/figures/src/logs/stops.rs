@@ -5,7 +5,7 @@ use core::ops::Range;
 use gyrocal_evaluation::Statistic;
 use gyrocal_instruments::{InstrumentError, Log, StopSettings, find_stops};
 use gyrocal_statistics::deviates::Draw;
-use gyrocal_testkit::position_test::{UnitErrors, hand_held, vector};
+use gyrocal_truth::units::position_test::{UnitErrors, hand_held, vector};
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 

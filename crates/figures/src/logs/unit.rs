@@ -2,8 +2,8 @@
 
 use gyrocal_instruments::Log;
 use gyrocal_statistics::deviates::Draw;
-use gyrocal_testkit::position_test::vector;
-use gyrocal_testkit::sensor_noise::SensorNoise;
+use gyrocal_truth::units::position_test::vector;
+use gyrocal_truth::units::sensor_noise::SensorNoise;
 use nalgebra::{Matrix3, Vector3};
 
 /// A degree per hour in rad/s.

@@ -4,7 +4,7 @@ use gyrocal_instruments::InstrumentError;
 use gyrocal_instruments::strapdown::{ImportSettings, import};
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_statistics::{NORMAL_97_5, root_mean_square};
-use gyrocal_testkit::position_test::vector;
+use gyrocal_truth::units::position_test::vector;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 

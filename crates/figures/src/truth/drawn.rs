@@ -1,10 +1,10 @@
-//! What the records of several populations are drawn of: scenarios, noise other than declared, drifts that wander.
+//! What the records of several populations are drawn of: scenarios, noise other than declared, walks.
 
 use gyrocal_calibration::NoiseModel;
 use gyrocal_evaluation::scenario;
 use gyrocal_record::AXES;
 use gyrocal_statistics::deviates::Draw;
-use gyrocal_truth::{Coefficients, Hidden, Scenario, Simulation, Term, simulate_with};
+use gyrocal_truth::{Coefficients, Hidden, Scenario};
 
 use crate::error::Error;
 
@@ -23,10 +23,6 @@ const MISDECLARED: [f64; 2] = [0.5, 2.0];
 
 /// Random walks, deg/h/√h.
 const WALKS: [f64; 2] = [3e-5, 2e-3];
-
-/// Time constants of the Gauss-Markov processes that flicker is the sum of, h: a factor of about
-/// three apart, so that their spectrum follows 1/f within 5 % between the first and the last.
-const FLICKER_H: [f64; 9] = [0.05, 0.15, 0.5, 1.5, 5.0, 15.0, 50.0, 150.0, 500.0];
 
 /// The scenario of a seed, with noise as declared.
 pub(super) fn plain(seed: u64) -> Scenario {
@@ -77,33 +73,6 @@ pub(super) fn of_gyro(gyro: usize, effect: &str, size: f64) -> Result<Hidden, Er
 /// A random walk of a gyro.
 pub(super) fn walk(gyro: usize, random: &mut Draw) -> Result<Hidden, Error> {
     of_gyro(gyro, "random_walk", random.log_uniform(WALKS))
-}
-
-/// A record with flicker of the drifts, deg/h: sums of Gauss-Markov processes of equal variance.
-pub(super) fn flickering(
-    scenario: &Scenario,
-    levels: [f64; 3],
-    random: &mut Draw,
-) -> Result<Simulation, Error> {
-    let step_s = scenario.interval_s;
-    let rows = (scenario.duration_s / step_s) as usize + 2;
-    let series = levels.map(|level| {
-        let mut values = vec![0.0; rows];
-        for time_h in FLICKER_H {
-            let kept = (-step_s / 3600.0 / time_h).exp();
-            let mut state = random.normal();
-            for value in &mut values {
-                *value += level * state;
-                state = kept * state + (1.0 - kept * kept).sqrt() * random.normal();
-            }
-        }
-        values
-    });
-    let term = Term::Drift(Box::new(move |moment| {
-        let row = ((moment.time_s / step_s) as usize).min(rows - 1);
-        core::array::from_fn(|gyro| series[gyro][row])
-    }));
-    Ok(simulate_with(scenario, &[term])?)
 }
 
 /// Coefficients of these standard deviations, deg/h, deg/h/g and deg/h/g².

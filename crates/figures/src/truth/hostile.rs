@@ -19,7 +19,7 @@ use crate::harness::{Context, Population, Row};
 use records::{FEW_ROWS, ROWS, record, sound};
 
 const SOURCES: Sources = of(
-    &["crates/diagnosis", "crates/testkit"],
+    &["crates/diagnosis", "crates/truth"],
     &[file!(), records::FILE, drawn::FILE],
 );
 

@@ -3,10 +3,11 @@
 
 use gyrocal_diagnosis::DiagnosisResult;
 use gyrocal_statistics::deviates::Draw;
-use gyrocal_truth::{Hidden, Scenario, Simulation, simulate};
+use gyrocal_truth::faults::noise::{flickering, student, with_noise};
+use gyrocal_truth::{Hidden, simulate};
 use serde::{Deserialize, Serialize};
 
-use super::drawn::{self, flickering, misdeclare, plain, walk};
+use super::drawn::{self, misdeclare, plain, walk};
 use super::judged::{self, diagnosed, surely_not_walks, within};
 use crate::error::Error;
 use crate::figure::Figure;
@@ -134,7 +135,10 @@ fn record(noise: Noise, seed: u64) -> Result<Noisy, Error> {
             scenario.hidden.push(coloured);
             simulate(&scenario)?
         }
-        Noise::Clean if random.uniform() < 0.5 => heavy_tailed(&scenario, &mut series)?,
+        // The variance of t₄ is two.
+        Noise::Clean if random.uniform() < 0.5 => {
+            with_noise(&scenario, |_| student(&mut series, 4) / 2.0_f64.sqrt())?
+        }
         Noise::Clean => simulate(&scenario)?,
     };
     let found = diagnosed(&simulation)?.result;
@@ -153,21 +157,4 @@ fn holds_size(found: &DiagnosisResult, walk: &Hidden) -> Option<bool> {
     let pieces = finding.parameter("size")?.interval.as_ref()?;
     let (_, size, _) = *walk.parameters().first()?;
     Some(within(pieces, size))
-}
-
-/// Student's t with four degrees of freedom for the accelerometers, of the declared variance.
-fn heavy_tailed(scenario: &Scenario, random: &mut Draw) -> Result<Simulation, Error> {
-    let quiet = Scenario {
-        accel_noise_g: 0.0,
-        ..scenario.clone()
-    };
-    let mut simulation = simulate(&quiet)?;
-    simulation.bench = scenario.bench();
-    for value in simulation.record.accel_g.iter_mut().flatten() {
-        let squares: f64 = (0..4).map(|_| random.normal().powi(2)).sum();
-        // The variance of t₄ is two.
-        let deviate = random.normal() / (squares / 4.0).sqrt() / 2.0_f64.sqrt();
-        *value += scenario.accel_noise_g * deviate;
-    }
-    Ok(simulation)
 }

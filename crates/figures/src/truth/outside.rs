@@ -2,9 +2,10 @@
 //! probability that the diagnosis gives to none of its effects.
 
 use gyrocal_diagnosis::Diagnosis;
-use gyrocal_evaluation::{EvaluationError, Statistic, UnlistedKind, UnlistedRecord, inject_any};
+use gyrocal_evaluation::{EvaluationError, Statistic, UnlistedRecord, inject_any};
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_statistics::mean;
+use gyrocal_truth::faults::UnlistedKind;
 use gyrocal_truth::{Scenario, simulate};
 use serde::{Deserialize, Serialize};
 

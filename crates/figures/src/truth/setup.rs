@@ -8,7 +8,7 @@ use gyrocal_evaluation::{Statistic, inject_any};
 use gyrocal_setup::{PlatformKind, check_setup};
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_statistics::{Proportion, median};
-use gyrocal_testkit::broken_setups::{BREAKAGES, leave_angles_out, varied_record, varied_scenario};
+use gyrocal_truth::faults::{BREAKAGES, leave_angles_out, varied_record, varied_scenario};
 use gyrocal_truth::{InitialAttitude, Scenario, Simulation, simulate};
 use serde::{Deserialize, Serialize};
 
@@ -21,7 +21,7 @@ use crate::harness::sources::of;
 use crate::harness::{Context, Population, Row};
 
 const SOURCES: Sources = of(
-    &["crates/diagnosis", "crates/evaluation", "crates/testkit"],
+    &["crates/diagnosis", "crates/evaluation"],
     &[file!(), drawn::FILE, judged::FILE],
 );
 
@@ -55,9 +55,9 @@ struct Told {
 }
 
 /// Pairs of records, the second without angles where they may be left out, have one kind in turn.
-fn tell(seed: u64) -> Told {
+fn tell(seed: u64) -> Result<Told, Error> {
     let breakage = &BREAKAGES[(seed / 2) as usize % BREAKAGES.len()];
-    let broken = breakage.record(seed);
+    let broken = breakage.record(seed)?;
     let found = check_setup(&broken.record, &broken.bench).findings;
     let is_named = |kind: &str| breakage.kinds.contains(&kind);
     let is_right = !found.is_empty()
@@ -65,16 +65,16 @@ fn tell(seed: u64) -> Told {
             let mut others = finding.equivalent_kinds.iter();
             is_named(finding.kind.as_str()) || others.any(|kind| is_named(kind.as_str()))
         });
-    Told {
+    Ok(Told {
         breakage: breakage.name.to_owned(),
         is_right,
-    }
+    })
 }
 
 fn broken(context: &Context) -> Result<Vec<Figure>, Error> {
     let kinds = BREAKAGES.len() as u64;
     let seeds = [3_000_000, 20 * kinds, 2 * kinds];
-    let population = Population::new("gross errors", seeds, SOURCES, |seed| Ok(tell(seed)));
+    let population = Population::new("gross errors", seeds, SOURCES, tell);
     let named = |what: &str| format!("gross errors, {kinds} kinds: {what}");
     let worst = |all: &[Told]| {
         let shares = by_kind(all).map(|(_, share)| share);
@@ -108,7 +108,7 @@ fn by_kind(all: &[Told]) -> impl Iterator<Item = (&'static str, Proportion)> {
 
 /// A sound record of a seed; every other one has an effect.
 fn sound_record(seed: u64) -> Result<Simulation, Error> {
-    let mut scenario = varied_scenario(seed);
+    let mut scenario = varied_scenario(seed)?;
     if seed % 2 == 1 {
         let mut random = Draw::new(seed, 4);
         let strength = random.log_uniform(STRENGTHS);
@@ -121,7 +121,7 @@ fn sound_record(seed: u64) -> Result<Simulation, Error> {
         let (with, _) = inject_any(slow, strength, &mut random)?;
         scenario.hidden.extend(with.hidden);
     }
-    Ok(varied_record(seed, &scenario))
+    Ok(varied_record(seed, &scenario)?)
 }
 
 fn sound(context: &Context) -> Result<Vec<Figure>, Error> {

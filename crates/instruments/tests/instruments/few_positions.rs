@@ -3,7 +3,7 @@
 use gyrocal_instruments::multi_position::{PreparedTest, few_position_test, prepare_logs};
 use gyrocal_instruments::{Description, Log, StopSettings, Unfit, find_stops};
 use gyrocal_statistics::deviates::Draw;
-use gyrocal_testkit::position_test::{Samples, UnitErrors, hand_held, positions, stop};
+use gyrocal_truth::units::position_test::{Samples, UnitErrors, hand_held, positions, stop};
 use nalgebra::{Matrix3, Vector3};
 
 const PER_DEG_PER_H: f64 = 4.848_136_811_095_36e-6;

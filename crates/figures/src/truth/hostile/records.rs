@@ -1,11 +1,12 @@
 //! Hostile records: what instruments, loggers and users do that no model explains.
 
 use gyrocal_statistics::deviates::Draw;
-use gyrocal_testkit::broken_setups::leave_angles_out;
+use gyrocal_truth::faults::leave_angles_out;
+use gyrocal_truth::faults::noise::flickering;
 use gyrocal_truth::{Hidden, InitialAttitude, Scenario, Simulation, simulate};
 
 use crate::error::Error;
-use crate::truth::drawn::{coefficients, flickering, of_gyro};
+use crate::truth::drawn::{coefficients, of_gyro};
 
 /// This file, as a source of populations.
 pub(super) const FILE: &str = file!();
@@ -112,7 +113,7 @@ const KINDS: [(&str, Maker); 25] = [
     ("walks of 0.2 on all gyros", |s, _| walks(s, 0.2)),
     ("flicker on all gyros", |s, r| {
         let level = r.log_uniform([1e-3, 1e-1]);
-        flickering(&s, [level; 3], r)
+        Ok(flickering(&s, [level; 3], r)?)
     }),
     ("outliers in a tenth of the values", |s, _| {
         with(s, "accel.outliers", &[("fraction", 0.1), ("size", 300.0)])

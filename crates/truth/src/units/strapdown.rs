@@ -3,17 +3,14 @@
 
 use std::path::Path;
 
-use gyrocal_record::{Bench, Record, write_whole};
+use gyrocal_record::{Bench, Prior, Record, write_whole};
 use gyrocal_statistics::deviates::Normals;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
-/// The bench description of all records: its text.
-const BENCH: &str = "[site]\nlatitude_deg = 39.1\n\n[platform]\ninitial_angles_deg = [0.0, 0.0, 0.0]\n\
-                         initial_angles_sigma_deg = [0.02, 0.02, 0.02]\n\n[noise]\naccel_g = 1e-5\n\
-                         gyro_deg_per_h = 0.002\n\n[prior]\nbias_sigma_deg_per_h = 1.0\n\
-                         g_sigma_deg_per_h_per_g = 1.0\ngg_sigma_deg_per_h_per_g2 = 1.0\n";
+use crate::platform::EARTH_RATE_RAD_PER_S;
+use crate::scenario::Scenario;
+
 const LATITUDE_DEG: f64 = 39.1;
-const EARTH_RATE_RAD_PER_S: f64 = 7.292_115e-5;
 const DEG_PER_H: f64 = core::f64::consts::PI / 180.0 / 3600.0;
 const GYRO_DEG_PER_H: f64 = 0.002;
 const ACCEL_G: f64 = 1e-5;
@@ -50,8 +47,27 @@ pub struct UnitRun<'a> {
 }
 
 impl UnitRun<'_> {
+    /// The bench description of all records: angles of zero, known to 0.02 degrees.
+    fn bench() -> Bench {
+        let scenario = Scenario {
+            latitude_deg: LATITUDE_DEG,
+            initial_angles_sigma_deg: [0.02; 3],
+            accel_noise_g: ACCEL_G,
+            gyro_noise_deg_per_h: GYRO_DEG_PER_H,
+            prior: Prior {
+                bias_sigma_deg_per_h: [1.0; 3],
+                g_sigma_deg_per_h_per_g: [1.0; 3],
+                gg_sigma_deg_per_h_per_g2: [1.0; 3],
+                ..Prior::default()
+            },
+            ..Scenario::default()
+        };
+        scenario.bench()
+    }
+
     /// The record. What the gyros read over an interval is the exact rotation between two rows, with the
     /// errors of its middle.
+    #[must_use]
     pub fn simulate(&self) -> StrapdownUnit {
         let mut normals = Normals::of_seed(self.seed);
         let mut noise = |size: f64| Vector3::from_fn(|_, _| size * normals.normal());
@@ -65,12 +81,8 @@ impl UnitRun<'_> {
         let held = GYRO_DEG_PER_H * (60.0 / self.interval_s).sqrt();
         let mut platform_c_body = first;
         let mut unit = StrapdownUnit {
-            record: Record {
-                time_s: Vec::new(),
-                accel_g: Vec::new(),
-                temperature_c: None,
-            },
-            bench: Bench::parse(BENCH, "bench.toml").unwrap(),
+            record: Record::default(),
+            bench: Self::bench(),
             platform_q_body: Vec::new(),
         };
         for row in 0..self.rows {
@@ -94,6 +106,9 @@ impl UnitRun<'_> {
 
 impl StrapdownUnit {
     /// Writes `record.csv`, `axes.csv` and `bench.toml` into a folder.
+    ///
+    /// # Errors
+    /// Those of writing.
     pub fn write(&self, folder: &Path) -> Result<(), gyrocal_record::Error> {
         self.record.write(&folder.join("record.csv"))?;
         let mut axes = "time_s,q_w,q_x,q_y,q_z\n".to_owned();
@@ -101,11 +116,15 @@ impl StrapdownUnit {
             axes += &format!("{time_s},{w:?},{x:?},{y:?},{z:?}\n");
         }
         write_whole(&folder.join("axes.csv"), axes.as_bytes())?;
-        write_whole(&folder.join("bench.toml"), BENCH.as_bytes())
+        self.bench.write(&folder.join("bench.toml"))
     }
 
     /// Matrices, by rows, that take components along the body to components along the platform: at the
     /// middle of the interval before a row, and at it.
+    ///
+    /// # Panics
+    /// If there is no such row.
+    #[must_use]
     pub fn axes(&self, row: usize) -> [[[f64; 3]; 3]; 2] {
         let at = |row: usize| {
             let [w, i, j, k] = self.platform_q_body[row];

@@ -1,31 +1,10 @@
 //! Bench descriptions that are wrong.
 
-use gyrocal_truth::Attitude;
-
 use super::Broken;
+use crate::attitude::Attitude;
 
-pub(super) fn negate_latitude(broken: &mut Broken) {
-    broken.bench.latitude_deg *= -1.0;
-}
-
-pub(super) fn latitude_in_radians(broken: &mut Broken) {
-    broken.bench.latitude_deg = broken.bench.latitude_deg.to_radians();
-}
-
-fn change_angles(broken: &mut Broken, change: impl FnOnce([f64; 3]) -> [f64; 3]) {
+pub(super) fn change_angles(broken: &mut Broken, change: impl FnOnce([f64; 3]) -> [f64; 3]) {
     broken.bench.initial_angles_deg = broken.bench.initial_angles_deg.map(change);
-}
-
-pub(super) fn angles_in_radians(broken: &mut Broken) {
-    change_angles(broken, |angles| angles.map(f64::to_radians));
-}
-
-pub(super) fn negate_angles(broken: &mut Broken) {
-    change_angles(broken, |angles| angles.map(|angle| -angle));
-}
-
-pub(super) fn zero_angles(broken: &mut Broken) {
-    change_angles(broken, |_| [0.0; 3]);
 }
 
 /// An azimuth that is wrong by 60 to 300 degrees: the platform turned about the vertical before the

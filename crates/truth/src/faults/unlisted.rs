@@ -4,10 +4,12 @@ use std::sync::Arc;
 
 use gyrocal_record::AXES;
 use gyrocal_statistics::deviates::Draw;
-use gyrocal_truth::{Hidden, Moment, Scenario, Simulation, Term, simulate, simulate_with};
 
-use crate::error::EvaluationError;
-use crate::scenario::duration_h;
+use crate::error::Error;
+use crate::hidden::Hidden;
+use crate::scenario::Scenario;
+use crate::simulation::{Simulation, simulate, simulate_with};
+use crate::term::{Moment, Term};
 
 /// Largest size of an effect of a gyro \[deg/h\]. Larger ones change the motion of the platform: the
 /// record is then a different one and not the same with a small disturbance.
@@ -73,18 +75,7 @@ impl UnlistedKind {
 
     /// Kinds that depend on more than time, of which the first five served to choose the constants of
     /// the probability of none of the catalogue and the last five did not.
-    pub const OF_FORCE: [Self; 10] = [
-        Self::DeadZone,
-        Self::CubicCross,
-        Self::TimeProduct,
-        Self::Hysteresis,
-        Self::ChangingScale,
-        Self::Lag,
-        Self::Rectified,
-        Self::Saturating,
-        Self::AgeingScale,
-        Self::OutputProduct,
-    ];
+    pub const OF_FORCE: &[Self] = Self::ALL.split_at(2).1;
 
     /// Its name.
     #[must_use]
@@ -112,34 +103,24 @@ pub struct UnlistedEffect {
     pub id: String,
     /// Its size: deg/h of a drift, g of an output.
     pub size: f64,
-    pub(crate) largest_size: f64,
+    /// The largest that it may have: larger ones make another record.
+    pub largest_size: f64,
     /// Names and values of all other parameters.
-    pub(crate) further: Vec<(&'static str, f64)>,
-    form: Form,
+    pub further: Vec<(&'static str, f64)>,
+    is_gyro: bool,
+    /// Axis and value of an effect of unit size; `None` of an effect that the simulator knows by its id.
+    unit: Option<(usize, Arc<Unit>)>,
 }
 
 /// Value of an effect of unit size.
 type Unit = dyn Fn(&Moment) -> f64 + Send + Sync;
-
-enum Form {
-    /// An effect that the simulator knows by its id.
-    Named,
-    /// A drift of one gyro.
-    Drift(usize, Arc<Unit>),
-    /// An error of one accelerometer.
-    Output(usize, Arc<Unit>),
-}
 
 impl UnlistedEffect {
     /// Draws an effect of a kind: its channel, the forces that it depends on, and its parameters.
     ///
     /// # Errors
     /// Those of a simulation of the undisturbed motion, which effects with a memory need.
-    pub fn draw(
-        kind: UnlistedKind,
-        scenario: &Scenario,
-        random: &mut Draw,
-    ) -> Result<Self, EvaluationError> {
+    pub fn draw(kind: UnlistedKind, scenario: &Scenario, random: &mut Draw) -> Result<Self, Error> {
         let own = (3.0 * random.uniform()) as usize % 3;
         let other = (3.0 * random.uniform()) as usize % 3;
         let gyro = random.uniform() < 0.5;
@@ -153,110 +134,87 @@ impl UnlistedEffect {
                 further,
             )
         };
+        let drift = |unit: Arc<Unit>| Self::of(kind.name(), true, own, unit);
+        let output = |unit: Arc<Unit>| Self::of(kind.name(), false, own, unit);
         Ok(match kind {
             UnlistedKind::Tone => {
                 let period_h = odd_period_h(scenario, random);
-                let further = vec![
-                    ("period_h", period_h),
-                    ("phase_deg", 360.0 * random.uniform()),
-                ];
-                named("tone", further)
+                let phase_deg = 360.0 * random.uniform();
+                named(
+                    "tone",
+                    vec![("period_h", period_h), ("phase_deg", phase_deg)],
+                )
             }
             UnlistedKind::Sign if gyro => named(&format!("sign_{}", AXES[other]), Vec::new()),
             UnlistedKind::Sign => named("sign", Vec::new()),
             UnlistedKind::DeadZone => named("dead_zone", Vec::new()),
-            UnlistedKind::CubicCross => Self::drift(kind, own, move |moment| {
+            UnlistedKind::CubicCross => drift(Arc::new(move |moment| {
                 let [f, g] = [moment.accel_g[other], moment.accel_g[(other + 1) % 3]];
                 f * f * g
-            }),
-            UnlistedKind::TimeProduct => Self::drift(kind, own, move |moment| {
+            })),
+            UnlistedKind::TimeProduct => drift(Arc::new(move |moment| {
                 moment.accel_g[other] * moment.time_s / duration_s
-            }),
+            })),
             UnlistedKind::ChangingScale => {
                 let onset_s = (0.2 + 0.6 * random.uniform()) * duration_s;
-                Self::drift(kind, own, move |moment| {
-                    if moment.time_s < onset_s {
-                        0.0
-                    } else {
-                        moment.accel_g[own]
-                    }
-                })
+                drift(Arc::new(move |moment| match moment.time_s < onset_s {
+                    true => 0.0,
+                    false => moment.accel_g[own],
+                }))
             }
             UnlistedKind::Hysteresis => {
                 let half_width_g = random.log_uniform(PLAYS_G);
                 let series = Series::of(scenario, other, |state, force, _| {
                     state.clamp(force - half_width_g, force + half_width_g)
                 })?;
-                Self::drift(kind, own, move |moment| series.at(moment.time_s))
+                drift(Arc::new(move |moment| series.at(moment.time_s)))
             }
             UnlistedKind::Lag => {
                 let lag_h = random.log_uniform(LAGS_H);
                 let series = Series::of(scenario, other, |state, force, step_s| {
                     force + (-step_s / 3600.0 / lag_h).exp() * (state - force)
                 })?;
-                Self::drift(kind, own, move |moment| series.at(moment.time_s))
+                drift(Arc::new(move |moment| series.at(moment.time_s)))
             }
-            UnlistedKind::Rectified => {
-                Self::output(kind, own, move |moment| moment.accel_g[own].abs())
-            }
-            UnlistedKind::Saturating => Self::output(kind, own, move |moment| {
+            UnlistedKind::Rectified => output(Arc::new(move |moment| moment.accel_g[own].abs())),
+            UnlistedKind::Saturating => output(Arc::new(move |moment| {
                 (moment.accel_g[own] / SATURATION_G).tanh()
-            }),
-            UnlistedKind::AgeingScale => Self::output(kind, own, move |moment| {
+            })),
+            UnlistedKind::AgeingScale => output(Arc::new(move |moment| {
                 moment.accel_g[own] * moment.time_s / duration_s
-            }),
-            UnlistedKind::OutputProduct => Self::output(kind, own, move |moment| {
+            })),
+            UnlistedKind::OutputProduct => output(Arc::new(move |moment| {
                 moment.accel_g[third] * moment.accel_g[3 - own - third]
-            }),
+            })),
         })
     }
 
     /// An effect that the simulator knows by its id, in a gyro or in an accelerometer, with the values of
     /// its parameters other than its size.
     #[must_use]
-    pub fn named(id: String, gyro: bool, further: Vec<(&'static str, f64)>) -> Self {
-        let (size, largest_size) = sizes(gyro);
+    pub fn named(id: String, is_gyro: bool, further: Vec<(&'static str, f64)>) -> Self {
+        let [size, largest_size] = match is_gyro {
+            true => [1e-3, LARGEST_GYRO_DEG_PER_H],
+            false => [1e-6, LARGEST_ACCEL_G],
+        };
         Self {
             id,
             size,
             largest_size,
             further,
-            form: Form::Named,
+            is_gyro,
+            unit: None,
         }
     }
 
-    fn drift(
-        kind: UnlistedKind,
-        gyro: usize,
-        unit: impl Fn(&Moment) -> f64 + Send + Sync + 'static,
-    ) -> Self {
-        Self::drift_of(kind.name(), gyro, unit)
-    }
-
-    /// A drift of one gyro, of a kind that is named here.
-    pub(crate) fn drift_of(
-        kind: &str,
-        gyro: usize,
-        unit: impl Fn(&Moment) -> f64 + Send + Sync + 'static,
-    ) -> Self {
-        let form = Form::Drift(gyro, Arc::new(unit));
-        let id = format!("{kind} in gyro {}", AXES[gyro]);
+    /// A drift of one gyro or an error of one accelerometer, by its value of unit size.
+    #[must_use]
+    pub fn of(kind: &str, is_gyro: bool, axis: usize, unit: Arc<Unit>) -> Self {
+        let instrument = if is_gyro { "gyro" } else { "accelerometer" };
+        let id = format!("{kind} in {instrument} {}", AXES[axis]);
         Self {
-            form,
-            ..Self::named(id, true, Vec::new())
-        }
-    }
-
-    fn output(
-        kind: UnlistedKind,
-        axis: usize,
-        unit: impl Fn(&Moment) -> f64 + Send + Sync + 'static,
-    ) -> Self {
-        let form = Form::Output(axis, Arc::new(unit));
-        let id = format!("{} in accelerometer {}", kind.name(), AXES[axis]);
-        Self {
-            form,
-            ..Self::named(id, false, Vec::new())
+            unit: Some((axis, unit)),
+            ..Self::named(id, is_gyro, Vec::new())
         }
     }
 
@@ -264,50 +222,32 @@ impl UnlistedEffect {
     ///
     /// # Errors
     /// Those of the simulator.
-    pub fn simulate(&self, scenario: &Scenario) -> Result<Simulation, EvaluationError> {
+    pub fn simulate(&self, scenario: &Scenario) -> Result<Simulation, Error> {
         let size = self.size;
-        let one = |axis: usize, unit: &Arc<Unit>| {
-            let unit = Arc::clone(unit);
-            Box::new(move |moment: &Moment| {
-                let mut all = [0.0; 3];
-                all[axis] = size * unit(moment);
-                all
-            })
+        let Some((axis, unit)) = self.unit.clone() else {
+            let mut parameters = vec![("size", size)];
+            parameters.extend(self.further.iter().copied());
+            let mut with = scenario.clone();
+            with.hidden.push(Hidden::new(&self.id, &parameters)?);
+            return simulate(&with);
         };
-        let term = match &self.form {
-            Form::Drift(gyro, unit) => Term::Drift(one(*gyro, unit)),
-            Form::Output(axis, unit) => Term::Output(one(*axis, unit)),
-            Form::Named => {
-                let mut parameters = vec![("size", size)];
-                parameters.extend(self.further.iter().copied());
-                let mut hidden = scenario.hidden.clone();
-                hidden.push(Hidden::new(&self.id, &parameters)?);
-                return Ok(simulate(&Scenario {
-                    hidden,
-                    ..scenario.clone()
-                })?);
-            }
+        let of = Box::new(move |moment: &Moment| {
+            let mut all = [0.0; 3];
+            all[axis] = size * unit(moment);
+            all
+        });
+        let term = match self.is_gyro {
+            true => Term::Drift(of),
+            false => Term::Output(of),
         };
-        Ok(simulate_with(scenario, &[term])?)
-    }
-}
-
-/// First and largest size.
-fn sizes(gyro: bool) -> (f64, f64) {
-    if gyro {
-        (1e-3, LARGEST_GYRO_DEG_PER_H)
-    } else {
-        (1e-6, LARGEST_ACCEL_G)
+        simulate_with(scenario, &[term])
     }
 }
 
 /// A period between six rows and a third of the record, away from the day and its half, which terms of
 /// the catalogue have.
 fn odd_period_h(scenario: &Scenario, random: &mut Draw) -> f64 {
-    let range = [
-        6.0 * scenario.interval_s / 3600.0,
-        duration_h(scenario) / 3.0,
-    ];
+    let range = [6.0 * scenario.interval_s, scenario.duration_s / 3.0].map(|s| s / 3600.0);
     loop {
         let period_h = random.log_uniform(range);
         let away = |from_h: f64| libm::fabs(libm::log(period_h / from_h)) > 0.15;
@@ -319,9 +259,11 @@ fn odd_period_h(scenario: &Scenario, random: &mut Draw) -> f64 {
 
 /// Values at the rows of a grid and between them: of a specific force and its past, along the motion without
 /// the effect.
-pub(crate) struct Series {
-    pub(crate) interval_s: f64,
-    pub(crate) values: Vec<f64>,
+pub struct Series {
+    /// Time between rows.
+    pub interval_s: f64,
+    /// Values at rows.
+    pub values: Vec<f64>,
 }
 
 impl Series {
@@ -330,7 +272,7 @@ impl Series {
         scenario: &Scenario,
         axis: usize,
         next: impl Fn(f64, f64, f64) -> f64,
-    ) -> Result<Self, EvaluationError> {
+    ) -> Result<Self, Error> {
         let undisturbed = simulate(&Scenario {
             hidden: Vec::new(),
             gaps_s: Vec::new(),
@@ -351,7 +293,9 @@ impl Series {
         })
     }
 
-    pub(crate) fn at(&self, time_s: f64) -> f64 {
+    /// The value at a time since the first row.
+    #[must_use]
+    pub fn at(&self, time_s: f64) -> f64 {
         let place = (time_s / self.interval_s).max(0.0);
         let last = self.values.len().saturating_sub(1);
         let row = (place as usize).min(last);

@@ -1,18 +1,24 @@
-//! Records with gross errors of the set-up, such as users have and the simulator does not make.
+//! Records such as users have and [`simulate`] does not make.
 //!
-//! A *breakage* takes a sound record with its bench description and spoils one of them. Each has the
-//! names of the kinds that tell it rightly: its own, and those that no record tells from it.
+//! A [`Breakage`] takes a sound record with its bench description and spoils one of them. Each has the
+//! names of the kinds that tell it rightly: its own, and those that no record tells from it. Noise that is not normal
+//! and drifts that wander are in [`noise`], effects that no catalogue holds are [`UnlistedEffect`]s.
 
 mod description;
-mod rows;
+pub mod noise;
+pub mod rows;
 mod sound;
+mod unlisted;
 
 use gyrocal_record::{Bench, Record};
 use gyrocal_statistics::deviates::Draw;
-use gyrocal_truth::{Population, Simulation, simulate};
 
+use crate::error::Error;
+use crate::simulation::{Simulation, simulate};
 use Angles::{Either, Given, Left};
-pub use sound::{large_effects, varied_record, varied_scenario};
+use description::change_angles;
+pub use sound::{any_scenario, large_effects, varied_record, varied_scenario};
+pub use unlisted::{Series, UnlistedEffect, UnlistedKind};
 
 /// A record, its bench description, and draws of what is spoilt.
 pub struct Broken {
@@ -20,7 +26,20 @@ pub struct Broken {
     pub record: Record,
     /// Its bench description.
     pub bench: Bench,
-    random: Draw,
+    /// What is drawn.
+    pub random: Draw,
+}
+
+impl Broken {
+    /// A record that is to be spoilt.
+    #[must_use]
+    pub fn of(Simulation { record, bench, .. }: Simulation, random: Draw) -> Self {
+        Self {
+            record,
+            bench,
+            random,
+        }
+    }
 }
 
 /// A way to spoil a record or its description.
@@ -61,13 +80,11 @@ impl Breakage {
     }
 
     /// The broken record of a seed.
-    pub fn record(&self, seed: u64) -> Broken {
-        let simulation = sound(seed);
-        let mut broken = Broken {
-            record: simulation.record,
-            bench: simulation.bench,
-            random: Draw::new(seed, 1),
-        };
+    ///
+    /// # Errors
+    /// As [`simulate`].
+    pub fn record(&self, seed: u64) -> Result<Broken, Error> {
+        let mut broken = Broken::of(sound(seed)?, Draw::new(seed, 1));
         let left = match self.angles {
             Angles::Given => false,
             Angles::Left => true,
@@ -77,7 +94,7 @@ impl Breakage {
         if left {
             leave_angles_out(&mut broken.bench);
         }
-        broken
+        Ok(broken)
     }
 
     /// Spoils a record that may be broken already.
@@ -95,7 +112,7 @@ pub const BREAKAGES: &[Breakage] = &[
     Breakage::new("times in minutes", &["clock"], Either, |b| rows::scale_time(b, 1.0 / 60.0)),
     Breakage::new("times in hours", &["clock"], Either, |b| rows::scale_time(b, 1.0 / 3600.0)),
     // missing values
-    Breakage::new("an empty column", &["missing"], Either, rows::empty_column),
+    Breakage::new("an empty column", &["missing"], Either, |b| b.each_of_one(|_| f64::NAN)),
     Breakage::new("0 in one column", &["missing-coded"], Either, |b| rows::code(b, 0.0, false)),
     Breakage::new("-999 in all columns", &["missing-coded"], Either, |b| rows::code(b, -999.0, true)),
     Breakage::new("a block of 0 in all columns", &["missing-coded"], Either, rows::zero_block),
@@ -119,42 +136,38 @@ pub const BREAKAGES: &[Breakage] = &[
     // leaps
     Breakage::new("a jump of the attitude", &["jump"], Either, rows::jump),
     Breakage::new("rows lost without a trace", &["jump"], Either, rows::lose),
-    Breakage::new("a jump of the clock", &["jump", "clock"], Either, rows::jump_clock),
+    Breakage::new("a jump of the clock", &["jump", "clock"], Either, |b| rows::jump_clock(b, [1800.0, 14_400.0])),
     Breakage::new("a platform at rest on the Earth", &["still"], Either, rows::stand_still),
     // axes and latitude without angles
-    Breakage::new("latitude negated, no angles", &["handedness"], Left, description::negate_latitude),
-    Breakage::new("two axes exchanged, no angles", &["handedness"], Left, rows::exchange_axes),
-    Breakage::new("one axis negated, no angles", &["handedness"], Left, rows::negate_axis),
+    Breakage::new("latitude negated, no angles", &["handedness"], Left, |b| b.bench.latitude_deg *= -1.0),
+    Breakage::new("two axes exchanged, no angles", &["handedness"], Left, |b| rows::exchange_axes(b, 0)),
+    Breakage::new("one axis negated, no angles", &["handedness"], Left, |b| b.each_of_one(|value| -value)),
     Breakage::new("all axes negated, no angles", &["handedness"], Left, |b| rows::scale(b, [-1.0; 3])),
-    Breakage::new("latitude in radians, no angles", &["latitude"], Left, description::latitude_in_radians),
+    Breakage::new("latitude in radians, no angles", &["latitude"], Left, |b| b.bench.latitude_deg = b.bench.latitude_deg.to_radians()),
     // axes, latitude and attitude with angles
-    Breakage::new("latitude negated", &["latitude"], Given, description::negate_latitude),
-    Breakage::new("latitude in radians", &["latitude"], Given, description::latitude_in_radians),
-    Breakage::new("two axes exchanged", &["axes"], Given, rows::exchange_axes),
-    Breakage::new("one axis negated", &["axes"], Given, rows::negate_axis),
+    Breakage::new("latitude negated", &["latitude"], Given, |b| b.bench.latitude_deg *= -1.0),
+    Breakage::new("latitude in radians", &["latitude"], Given, |b| b.bench.latitude_deg = b.bench.latitude_deg.to_radians()),
+    Breakage::new("two axes exchanged", &["axes"], Given, |b| rows::exchange_axes(b, 0)),
+    Breakage::new("one axis negated", &["axes"], Given, |b| b.each_of_one(|value| -value)),
     Breakage::new("all axes negated", &["axes"], Given, |b| rows::scale(b, [-1.0; 3])),
-    Breakage::new("all axes exchanged", &["axes"], Given, rows::turn_axes),
-    Breakage::new("angles in radians", &["angles"], Given, description::angles_in_radians),
-    Breakage::new("angles negated", &["angles"], Given, description::negate_angles),
+    Breakage::new("all axes exchanged", &["axes"], Given, |b| b.each(|row| row.rotate_left(1))),
+    Breakage::new("angles in radians", &["angles"], Given, |b| change_angles(b, |angles| angles.map(f64::to_radians))),
+    Breakage::new("angles negated", &["angles"], Given, |b| change_angles(b, |angles| angles.map(|angle| -angle))),
     Breakage::new("angles against north, east, down", &["angles"], Given, description::angles_against_ned),
-    Breakage::new("angles left at zero", &["attitude"], Given, description::zero_angles),
+    Breakage::new("angles left at zero", &["attitude"], Given, |b| change_angles(b, |_| [0.0; 3])),
     Breakage::new("the azimuth of another day", &["attitude", "angles"], Given, description::turn_azimuth),
     // gravity
-    Breakage::new("standard g at another site", &["gravity"], Either, rows::standard_gravity),
-    Breakage::new("a common scale", &["gravity", "scale"], Either, rows::common_scale),
+    Breakage::new("standard g at another site", &["gravity"], Either, |b| rows::scale_by(b, [3e-4, 2.5e-3])),
+    Breakage::new("a common scale", &["gravity", "scale"], Either, |b| rows::scale_by(b, [0.01, 0.06])),
 ];
 
 /// A sound record: any attitude, latitudes of 15 to 75 degrees north or south, two to four days
 /// each minute.
-pub fn sound(seed: u64) -> Simulation {
-    let population = Population {
-        duration_days: [2.0, 4.0],
-        ..Population::new(seed)
-    };
-    let mut scenario = population.scenario(0);
-    let mut random = Draw::new(seed, 0);
-    scenario.latitude_deg = random.sign() * (15.0 + 60.0 * random.uniform());
-    simulate(&scenario).unwrap()
+///
+/// # Errors
+/// As [`simulate`].
+pub fn sound(seed: u64) -> Result<Simulation, Error> {
+    simulate(&any_scenario(seed, 0, [15.0, 75.0]))
 }
 
 /// The bench description without initial angles.

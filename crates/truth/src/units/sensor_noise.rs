@@ -6,6 +6,8 @@
 
 use gyrocal_statistics::deviates::Normals;
 
+use crate::gyro_noise::walked;
+
 /// Noise of a gyro at rest, sampled each second, by the coefficients of IEEE Std 952.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct SensorNoise {
@@ -73,11 +75,10 @@ impl SensorNoise {
     fn add_walk(&self, rates: &mut [f64], normals: &mut Normals) {
         let mut value = 0.0;
         for rate in rates {
-            // Change over a sample, and of its mean over the sample from the value before.
             let [change, other] = [normals.normal(), normals.normal()];
-            let mean = 0.5 * change + other / 12.0_f64.sqrt();
-            *rate += value + self.rate_random_walk * mean;
-            value += self.rate_random_walk * change;
+            let (mean, end) = walked(value, self.rate_random_walk, [change, other]);
+            *rate += mean;
+            value = end;
         }
     }
 

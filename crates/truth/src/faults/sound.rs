@@ -2,12 +2,37 @@
 
 use gyrocal_record::{AXES, Prior};
 use gyrocal_statistics::deviates::Draw;
-use gyrocal_truth::{Coefficients, Hidden, Population, Scenario, Simulation, simulate};
 
 use super::leave_angles_out;
+use super::noise::quantised;
+use crate::coefficients::Coefficients;
+use crate::error::Error;
+use crate::hidden::Hidden;
+use crate::population::Population;
+use crate::scenario::Scenario;
+use crate::simulation::{Simulation, simulate};
+
+/// The scenario of a number: any attitude, latitudes of this range north or south, the same of all of a seed, two to
+/// four days each minute.
+#[must_use]
+pub fn any_scenario(seed: u64, number: u64, [least_deg, most_deg]: [f64; 2]) -> Scenario {
+    let population = Population {
+        duration_days: [2.0, 4.0],
+        ..Population::new(seed)
+    };
+    let mut random = Draw::new(seed, 0);
+    let sign = random.sign();
+    Scenario {
+        latitude_deg: sign * (least_deg + (most_deg - least_deg) * random.uniform()),
+        ..population.scenario(number)
+    }
+}
 
 /// A scenario of any latitude, attitude, sampling and prior, with coefficients from the prior.
-pub fn varied_scenario(seed: u64) -> Scenario {
+///
+/// # Errors
+/// None that a seed can have: those of [`Hidden::new`].
+pub fn varied_scenario(seed: u64) -> Result<Scenario, Error> {
     let mut random = Draw::new(seed, 2);
     let population = Population {
         duration_days: [1.0, 5.0],
@@ -41,28 +66,26 @@ pub fn varied_scenario(seed: u64) -> Scenario {
     };
     if random.uniform() < 0.3 {
         let lsb_g = scenario.accel_noise_g * random.log_uniform([1.0, 30.0]);
-        for axis in AXES {
-            let id = format!("accel_{axis}.quantisation");
-            scenario
-                .hidden
-                .push(Hidden::new(&id, &[("lsb", lsb_g)]).unwrap());
-        }
+        scenario.hidden.extend(quantised(lsb_g)?);
     }
-    scenario
+    Ok(scenario)
 }
 
 /// The record of a scenario, with noise declared right or in another unit, and with angles or
 /// without.
-pub fn varied_record(seed: u64, scenario: &Scenario) -> Simulation {
+///
+/// # Errors
+/// As [`simulate`].
+pub fn varied_record(seed: u64, scenario: &Scenario) -> Result<Simulation, Error> {
     let mut random = Draw::new(seed, 3);
-    let mut simulation = simulate(scenario).unwrap();
+    let mut simulation = simulate(scenario)?;
     let unit = *random.one_of(&[1.0, 1.0, 1.0, 7.7, 1.0 / 7.7, 60.0, 1.0 / 60.0]);
     simulation.bench.accel_noise_g *= unit;
     simulation.bench.gyro_noise_deg_per_h *= unit;
     if random.uniform() < 0.5 {
         leave_angles_out(&mut simulation.bench);
     }
-    simulation
+    Ok(simulation)
 }
 
 /// Large effects of all sorts, about a hundred of their own sigmas in three days of minutes.
