@@ -10,6 +10,7 @@ mod cost;
 mod diagnosis_ground;
 mod embedded;
 mod error;
+mod field;
 mod figure;
 mod fleet;
 mod gain;

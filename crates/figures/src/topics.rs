@@ -9,9 +9,9 @@ use crate::harness::sources::{
 use crate::harness::topic::{Part, Topic};
 use crate::truth::Extent;
 use crate::{
-    any_plant, before, calibration, catalogue, comparison, diagnosis_ground, embedded, fleet, gain,
-    generator, house, kernel, logs, measured, naming, paper, plant_peers, records, report, truth,
-    watch,
+    any_plant, before, calibration, catalogue, comparison, diagnosis_ground, embedded, field,
+    fleet, gain, generator, house, kernel, logs, measured, naming, paper, plant_peers, records,
+    report, truth, watch,
 };
 
 /// All topics.
@@ -157,6 +157,11 @@ pub(crate) const TOPICS: [Topic; 8] = [
                 "Causes outside of the catalogue.",
                 truth::outside::figures,
             ),
+            diagnosed(
+                "field",
+                "Records that a user could have: wrong numbers in bench files, and kinds of records.",
+                field::of_records,
+            ),
             part(
                 "catalogue",
                 "The catalogue of effects: docs/catalogue.md and a picture of each signature.",
@@ -234,6 +239,19 @@ pub(crate) const TOPICS: [Topic; 8] = [
                     ],
                 ),
                 any_plant::figures,
+            ),
+            part(
+                "field",
+                "Kinds of records of a servo that a user could have.",
+                of(
+                    PLANTS,
+                    &[
+                        "crates/figures/src/any_plant.rs",
+                        "crates/figures/src/field.rs",
+                        "examples/servo",
+                    ],
+                ),
+                field::of_plants,
             ),
             Part {
                 small: false,

@@ -1,0 +1,116 @@
+//! Records that a user could have and the simulator does not make: how often what is right for each is told, and how
+//! often a physical cause that is not there and nothing else.
+
+use gyrocal_evaluation::{FieldOutcome, FieldPopulation, Judgement, Statistic};
+use gyrocal_statistics::median;
+
+use crate::any_plant::plants;
+use crate::any_plant::simulated::Kind;
+use crate::error::Error;
+use crate::figure::Figure;
+use crate::harness::sources::{DIAGNOSIS, of};
+use crate::harness::{Context, Population, Row};
+
+/// Records of a row.
+const RECORDS: u64 = 20;
+
+/// Rows of the small version, with one record each: those whose right answers are told already.
+const SMALL: [&str; 6] = [
+    "site.latitude_deg +- 20",
+    "noise.accel_g x 2",
+    "time_s +- 3600",
+    "at 85 deg",
+    "records of two platforms",
+    "servo: as declared",
+];
+
+/// Least number of rows of wrong keys.
+const LEAST_ROWS: f64 = 60.0;
+
+/// Words for the judgements, the right one first.
+const JUDGEMENTS: [(Judgement, &str); 4] = [
+    (Judgement::Right, "right"),
+    (Judgement::NotSettled, "not settled"),
+    (Judgement::Wrong, "wrong"),
+    (Judgement::PhysicalAlone, "a physical cause alone"),
+];
+
+/// All figures of the part `field` of the diagnosis.
+pub(crate) fn of_records(context: &Context) -> Result<Vec<Figure>, Error> {
+    let keys = FieldPopulation::wrong_keys();
+    let name = "wrong bench keys: rows";
+    let mut figures = vec![Figure::within(
+        name,
+        [LEAST_ROWS, f64::INFINITY],
+        keys.len() as f64,
+    )];
+    figures.extend(table(context, "wrong bench keys", keys)?);
+    figures.extend(table(
+        context,
+        "records of users",
+        FieldPopulation::kinds(),
+    )?);
+    Ok(figures)
+}
+
+/// All figures of the part `field` of the plants.
+pub(crate) fn of_plants(context: &Context) -> Result<Vec<Figure>, Error> {
+    let plants = plants()?;
+    let kinds = FieldPopulation::plants(&plants[Kind::Servo as usize]);
+    table(context, "records of a user's plant", kinds)
+}
+
+/// A row for each population, and shares of all records. What is right is the reason of a row.
+fn table(
+    context: &Context,
+    name: &str,
+    rows: Vec<FieldPopulation<'_>>,
+) -> Result<Vec<Figure>, Error> {
+    let (mut figures, mut all) = (Vec::new(), Vec::new());
+    let mut is_full = true;
+    for FieldPopulation {
+        name,
+        first_seed,
+        right,
+        job,
+    } in rows
+    {
+        let small = u64::from(SMALL.contains(&&*name));
+        let population = Population {
+            name: format!("field {name}"),
+            first: first_seed,
+            full: RECORDS,
+            small,
+            sources: of(DIAGNOSIS, &[file!(), "examples/servo"]),
+            job: Box::new(move |seed| Ok(job(seed)?)),
+        };
+        let of_row = context.measure(&population, &[Row::words(name, counts)])?;
+        figures.extend(of_row.into_iter().map(|figure| Figure {
+            reason: right.clone(),
+            ..figure
+        }));
+        let records = context.records(&population)?;
+        is_full &= records.full;
+        all.extend(records.records.iter().cloned());
+    }
+    let total = |(judgement, word): (Judgement, &str)| {
+        let share = Statistic::share(&all, |one| Some(one.judgement == judgement));
+        Figure::of_statistic(&format!("{name}: {word}, of all"), &share, None, is_full)
+    };
+    figures.extend(JUDGEMENTS.map(total));
+    Ok(figures)
+}
+
+/// Numbers of records by judgement, and the median of their strengths.
+fn counts(records: &[FieldOutcome]) -> String {
+    let counts = JUDGEMENTS.map(|(judgement, word)| {
+        let count = records.iter().filter(|one| one.judgement == judgement);
+        format!("{} {word}", count.count())
+    });
+    let strengths: Vec<f64> = records.iter().filter_map(|one| one.strength).collect();
+    let strength = match strengths.is_empty() {
+        true => String::new(),
+        false => format!("; {:.1} sigma", median(&strengths)),
+    };
+    counts.join(", ") + &strength
+}
