@@ -2,7 +2,7 @@
 //! calibrated, and the errors are held against the budget.
 
 use gyrocal_calibration::{
-    Options, Run, UncertaintyBudget, UncertaintySource, calibrate_with_budget, spread,
+    Options, UncertaintyBudget, UncertaintySource, calibrate_with_budget, spread,
 };
 use gyrocal_record::{Prior, SiteUncertainty};
 use gyrocal_statistics::deviates::Draw;
@@ -10,6 +10,7 @@ use gyrocal_truth::{Coefficients, Hidden, InitialAttitude, Scenario, Simulation,
 use serde::{Deserialize, Serialize};
 
 use crate::error::EvaluationError;
+use crate::injection::run_of;
 
 /// Purposes of the streams of a seed.
 const BENCH: u64 = 0;
@@ -198,10 +199,7 @@ impl DrawnPlatform {
         }
         let mut simulation = simulate(&scenario)?;
         simulation.bench.uncertainty = self.uncertainty;
-        let runs = [Run {
-            record: &simulation.record,
-            bench: &simulation.bench,
-        }];
+        let runs = [run_of(&simulation)];
         let (_, budget) = calibrate_with_budget(&runs, &Options::default())?;
         Ok((simulation, budget))
     }

@@ -1,11 +1,12 @@
 //! Trials of the calibration: a simulated record, calibrated and compared with its truth.
 
-use gyrocal_calibration::{Consistency, Options, Run, calibrate, cramer_rao_bound};
+use gyrocal_calibration::{Consistency, Options, calibrate, cramer_rao_bound};
 use gyrocal_truth::{Scenario, Simulation, simulate};
 use nalgebra::{SMatrix, SVector};
 use serde::{Deserialize, Serialize};
 
 use crate::error::EvaluationError;
+use crate::injection::run_of;
 
 /// Errors and consistency of one calibration. Arrays are in the order of
 /// [`Coefficients::named`](gyrocal_truth::Coefficients::named).
@@ -91,11 +92,7 @@ impl CalibrationTrial {
         }
         let attitudes = simulation.truth.platform_c_enu.iter();
         let platform_c_enu: Vec<_> = attitudes.map(|attitude| attitude.matrix()).collect();
-        let run = Run {
-            record: &simulation.record,
-            bench: &simulation.bench,
-        };
-        let covariance = cramer_rao_bound(&run, &platform_c_enu, &self.truth)?;
+        let covariance = cramer_rao_bound(&run_of(simulation), &platform_c_enu, &self.truth)?;
         Ok(Self {
             bound_sigma: Some(core::array::from_fn(|i| covariance[i][i].sqrt())),
             ..self

@@ -3,6 +3,7 @@
 use gyrocal::effect::Enters;
 use gyrocal::generated::catalogue::{OUTPUTS, PARAMETERS, RATES};
 use gyrocal::{EFFECTS, Effect};
+use gyrocal_diagnosis::result::Finding;
 
 /// The effect of an id; `None` for an id that the catalogue does not have.
 #[must_use]
@@ -14,6 +15,12 @@ pub fn effect_of(id: &str) -> Option<&'static Effect> {
 #[must_use]
 pub fn same_or_equivalent(one: &str, other: &str) -> bool {
     one == other || effect_of(one).is_some_and(|effect| effect.equivalents.contains(&other))
+}
+
+/// `true` if the confidence set of a finding holds an effect or an exact equivalent of it.
+#[must_use]
+pub fn set_holds(finding: &Finding, id: &str) -> bool {
+    finding.set().any(|member| same_or_equivalent(member, id))
 }
 
 /// Family of an effect: that of the first of its exact equivalents, its id with `i` for its own axis and

@@ -105,15 +105,19 @@ pub fn nominal_fit(simulation: &Simulation) -> Result<FittedPlatform<'_>, Evalua
     fit(simulation, &NoiseModel::default())
 }
 
-fn fit<'r>(
+/// The same with another noise.
+pub(crate) fn fit<'r>(
     simulation: &'r Simulation,
     noise: &NoiseModel,
 ) -> Result<FittedPlatform<'r>, EvaluationError> {
-    let run = Run {
-        record: &simulation.record,
-        bench: &simulation.bench,
-    };
+    let run = run_of(simulation);
     Ok(FittedPlatform::nominal(&run, &Options::default(), noise)?)
+}
+
+/// The record of a simulation with its bench description.
+#[must_use]
+pub fn run_of(Simulation { record, bench, .. }: &Simulation) -> Run<'_> {
+    Run { record, bench }
 }
 
 /// Draws sizes of effects, in a random direction and each of `strength` sigmas of its own bound: with

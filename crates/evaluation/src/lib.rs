@@ -104,7 +104,7 @@ pub use budget_trial::{BudgetTrial, SpreadTrial, TrueCoefficients};
 pub use calibration_summary::{BandedMean, CalibrationSummary, CoefficientSummary, MeasuredValue};
 pub use calibration_trial::CalibrationTrial;
 pub use campaign::{Campaign, Failure, Fingerprint, Outcome, Progress, program};
-pub use catalogue::{constant_of_channel, effect_family, effect_of, same_or_equivalent};
+pub use catalogue::{constant_of_channel, effect_family, effect_of, same_or_equivalent, set_holds};
 pub use cell_characteristics::{characteristics, measures};
 pub use characterise_report::{CellReport, CharacteriseReport, cell_campaign, cell_report};
 pub use characteristic::{Characteristic, Measure};
@@ -116,7 +116,7 @@ pub use error::EvaluationError;
 pub use field::{FieldOutcome, FieldPopulation, Judgement};
 pub use injection::{
     InjectedEffect, draw_shape, inject, inject_any, inject_into, inject_one_of, nominal_fit,
-    testable_effects,
+    run_of, testable_effects,
 };
 pub use monte_carlo_report::MonteCarloReport;
 pub use oracle::sets_without_walks;

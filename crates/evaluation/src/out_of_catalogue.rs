@@ -5,7 +5,6 @@
 //! believes, is fitted to the record with and without the effect. Beside a random walk that takes the effect up
 //! little of it is left, as no record tells a slow function of time from a walk.
 
-use gyrocal_calibration::{FittedPlatform, Options, Run};
 use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, diagnose};
 use gyrocal_hypothesis::{Column, ExtraColumns, ModelExtension};
 use gyrocal_statistics::deviates::Draw;
@@ -13,7 +12,7 @@ use gyrocal_truth::faults::{UnlistedEffect, UnlistedKind};
 use gyrocal_truth::{Scenario, Simulation, simulate};
 
 use crate::error::EvaluationError;
-use crate::injection::{first_of, nominal_fit};
+use crate::injection::{first_of, fit, nominal_fit};
 use crate::record_score::{InjectedScore, RecordScore};
 use crate::score::findings_score;
 
@@ -156,12 +155,7 @@ impl UnlistedRecord {
             named_effects(extended.extension())
         });
         let residuals = |simulation: &Simulation| {
-            let run = Run {
-                record: &simulation.record,
-                bench: &simulation.bench,
-            };
-            let nominal =
-                FittedPlatform::nominal(&run, &Options::default(), &found.noise_model).ok()?;
+            let nominal = fit(simulation, &found.noise_model).ok()?;
             nominal.refitted(&named).ok()?.whitened().ok()
         };
         Some(distance(&residuals(&self.clean)?, &residuals(&self.with)?))

@@ -1,19 +1,18 @@
 //! Comparison of the diagnosis of one record with the effects injected into it.
 
 use gyrocal::effect::Role;
-use gyrocal_calibration::{NoiseModel, rows};
+use gyrocal_calibration::NoiseModel;
 use gyrocal_diagnosis::result::{DiagnosisResult, Finding, FindingKind, Parameter, RankedEffect};
-use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, Verdict, diagnose, selection};
-use gyrocal_hypothesis::{FittedModel, SearchOptions, search};
+use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, Verdict, diagnose};
 use gyrocal_statistics::NORMAL_97_5;
 use gyrocal_truth::{Scenario, Simulation};
 
 use crate::baseline::{BaselineMethod, LibraryEntry, library};
-use crate::catalogue::{effect_of, same_or_equivalent};
+use crate::catalogue::{effect_of, same_or_equivalent, set_holds};
 use crate::coefficient_score::CoefficientScore;
 use crate::error::EvaluationError;
 use crate::injection::{InjectedEffect, nominal_fit, testable_effects};
-use crate::oracle::sets_without_walks;
+use crate::oracle::{sets_in_noise, sets_without_walks};
 use crate::projection::ProjectedScores;
 use crate::record_score::{BaselineScore, FindingScore, InjectedScore, RecordScore};
 use crate::signature::{Signature, SignatureColumns};
@@ -274,11 +273,7 @@ fn injected_score(
         let listed = equivalents.find(|other| other.effect == id);
         listed.map(|other| other.parameters.as_slice())
     });
-    let in_set = found.causes().any(|finding| {
-        let mut others = finding.alternatives.iter();
-        same_or_equivalent(&finding.effect, id)
-            || others.any(|other| same_or_equivalent(&other.effect, id))
-    });
+    let in_set = found.causes().any(|finding| set_holds(finding, id));
     let shape = injected.effect.shape();
     let shape = shape.filter(|shape| matches!(shape.role, Role::Onset(_)));
     let onset_s = parameters.zip(shape).and_then(|(parameters, shape)| {
@@ -328,20 +323,13 @@ fn oracle_set_size(
     simulation: &Simulation,
     found: &Diagnosis<'_>,
 ) -> Result<Option<usize>, EvaluationError> {
-    if found.noise_model == NoiseModel::default() {
+    let noise = NoiseModel::default();
+    if found.noise_model == noise {
         let first = found.result.causes().next();
-        return Ok(first.map(|finding| 1 + finding.alternatives.len()));
+        return Ok(first.map(|finding| finding.set().count()));
     }
-    let options = SearchOptions {
-        false_alarm_probability: found.result.false_alarm_shares.search,
-        ..SearchOptions::default()
-    };
-    let nominal = nominal_fit(simulation)?;
-    let (record, bench) = (&simulation.record, &simulation.bench);
-    let rows = rows(record, nominal.covariates());
-    let searched = search(nominal, rows, &selection(record, bench, &[]), &options)?;
-    let first = searched.findings.first();
-    Ok(first.map(|finding| 1 + finding.alternatives.len()))
+    let sets = sets_in_noise(found, simulation, &noise, |_| true)?;
+    Ok(sets.first().map(Vec::len))
 }
 
 /// Onset or time constant of a finding.

@@ -6,18 +6,10 @@ pub(crate) mod planning;
 pub(crate) mod several;
 
 use gyrocal::effect::EffectKind;
-use gyrocal_calibration::Run;
 use gyrocal_evaluation::{constant_of_channel, effect_of};
-use gyrocal_truth::{Hidden, Scenario, Simulation};
+use gyrocal_truth::{Hidden, Scenario};
 
 use crate::error::Error;
-
-fn run(simulation: &Simulation) -> Run<'_> {
-    Run {
-        record: &simulation.record,
-        bench: &simulation.bench,
-    }
-}
 
 /// The hidden effects of a scenario as they continue in a record that starts so long after: what has grown is a
 /// constant then, and what happened at a time has left a constant or nothing.

@@ -7,8 +7,8 @@ use crate::command::{Outcome, run};
 use crate::copy::WorkspaceCopy;
 
 /// Hides each effect in a record of three days of its own, diagnoses the records side by side and
-/// prints a line for each: id, whether it is the one finding, and for each parameter name, true value,
-/// estimate, standard deviation and the ends of the interval.
+/// prints a line for each: id, whether it is the one finding, and for each parameter its name and the distance of the
+/// estimate from the truth in standard deviations.
 const FINDER: &str = r#"
 use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
 use gyrocal_truth::{
@@ -82,14 +82,8 @@ fn search(seed: u64, (id, drift, add, truth): Case) -> String {
     for finding in found.findings.iter().filter(|finding| finding.effect == id) {
         for (name, truth) in truth {
             let parameter = finding.parameter(name).unwrap();
-            let sigma = parameter.sigma.unwrap_or(f64::NAN);
-            let [low, high] = match parameter.interval.as_deref() {
-                Some([piece, ..]) => *piece,
-                _ => [f64::NAN; 2],
-            };
-            let estimate = parameter.estimate;
-            let words = format!(" {name} {truth:e} {estimate:e} {sigma:e} {low:e} {high:e}");
-            line.push_str(&words);
+            let distance = (parameter.estimate - truth).abs() / parameter.sigma.unwrap_or(f64::NAN);
+            line.push_str(&format!(" {name} {distance:e}"));
         }
     }
     let names: Vec<&str> = found.findings.iter().map(|f| f.effect.as_str()).collect();
@@ -98,23 +92,18 @@ fn search(seed: u64, (id, drift, add, truth): Case) -> String {
 }
 "#;
 
-/// One parameter of a term, as hidden and as found.
+/// One parameter of a term.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FoundParameter {
     /// Its name.
     pub name: String,
-    /// Value in the simulation.
-    pub truth: f64,
-    /// Estimate.
-    pub estimate: f64,
-    /// Its standard deviation.
-    pub sigma: f64,
+    distance: f64,
 }
 
 impl FoundParameter {
     /// Distance of the estimate from the truth in standard deviations.
     pub fn distance(&self) -> f64 {
-        (self.estimate - self.truth).abs() / self.sigma
+        self.distance
     }
 }
 
@@ -181,18 +170,13 @@ pub fn find_own_terms(
 
 fn found_term(line: &str) -> FoundTerm {
     let words: Vec<&str> = line.split(' ').collect();
-    let number = |text: &str| text.parse::<f64>().unwrap();
+    let parameters = words[2..].chunks(2).map(|parameter| FoundParameter {
+        name: parameter[0].to_owned(),
+        distance: parameter[1].parse().unwrap(),
+    });
     FoundTerm {
         id: words[0].to_owned(),
         only: words[1] == "true",
-        parameters: words[2..]
-            .chunks(6)
-            .map(|parameter| FoundParameter {
-                name: parameter[0].to_owned(),
-                truth: number(parameter[1]),
-                estimate: number(parameter[2]),
-                sigma: number(parameter[3]),
-            })
-            .collect(),
+        parameters: parameters.collect(),
     }
 }

@@ -188,6 +188,12 @@ impl Finding {
             .iter()
             .find(|parameter| parameter.name == name)
     }
+
+    /// Ids of its confidence set, the named effect first.
+    pub fn set(&self) -> impl Iterator<Item = &str> {
+        let others = self.alternatives.iter().map(|other| &*other.effect);
+        core::iter::once(&*self.effect).chain(others)
+    }
 }
 
 /// A diagnosis in one word.

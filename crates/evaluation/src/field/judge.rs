@@ -123,11 +123,11 @@ impl Name {
     }
 
     fn of(finding: &Finding) -> Self {
-        let alternatives = finding.alternatives.iter().map(|other| &other.effect);
-        let equivalents = finding.equivalents.iter().map(|other| &other.effect);
+        let equivalents = finding.equivalents.iter().map(|other| &*other.effect);
+        let set = finding.set().chain(equivalents);
         Self {
             id: finding.effect.clone(),
-            set: alternatives.chain(equivalents).cloned().collect(),
+            set: set.map(str::to_owned).collect(),
             is_physical: is_physical(&finding.effect),
         }
     }

@@ -4,13 +4,13 @@ use gyrocal::effect::Enters;
 use gyrocal_calibration::FittedPlatform;
 use gyrocal_design::NamedCause;
 use gyrocal_diagnosis::{DiagnoseOptions, diagnose, predict_later};
-use gyrocal_evaluation::{effect_of, inject_any, scenario};
+use gyrocal_evaluation::{effect_of, inject_any, run_of, scenario};
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_statistics::{Proportion, median};
 use gyrocal_truth::{Scenario, simulate};
 use serde::{Deserialize, Serialize};
 
-use super::{continued, run};
+use super::continued;
 use crate::error::Error;
 use crate::figure::Figure;
 use crate::gain::FIRST_NUMBER;
@@ -154,7 +154,7 @@ fn second(seed: u64) -> Result<Second, Error> {
         hidden: continued(&scenario, LATER_S)?,
         ..scenario
     })?;
-    let (one, other) = (run(&first), run(&later));
+    let (one, other) = (run_of(&first), run_of(&later));
     let predicted = |extended: &FittedPlatform<'_>| {
         let models = [&found.nominal, extended];
         predict_later(models, &found.noise_model, &one, (&other, None), &options)

@@ -3,12 +3,12 @@
 use gyrocal_calibration::{NoiseModel, Options, calibrate_runs};
 use gyrocal_design::{NamedCause, PlanOptions, Proposal, compare, plan};
 use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
-use gyrocal_evaluation::{Statistic, inject_any};
+use gyrocal_evaluation::{Statistic, inject_any, run_of};
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{InitialAttitude, Population as Platforms, Scenario, Simulation, simulate};
 use serde::{Deserialize, Serialize};
 
-use super::{continued, run};
+use super::continued;
 use crate::error::Error;
 use crate::figure::Figure;
 use crate::harness::sources::{DIAGNOSIS, of};
@@ -116,11 +116,11 @@ fn sigmas(seed: u64) -> Result<Vec<f64>, Error> {
     let scenario = scenario(seed);
     let first = simulate(&scenario)?;
     let (noise, options) = (NoiseModel::default(), Options::default());
-    let fitted = NamedCause::fitted(&[], &run(&first), &noise, &options)?;
-    let planned = plan(&fitted, &run(&first), &[], &PlanOptions::default())?;
+    let fitted = NamedCause::fitted(&[], &run_of(&first), &noise, &options)?;
+    let planned = plan(&fitted, &run_of(&first), &[], &PlanOptions::default())?;
     let best = planned.proposals.first().ok_or("no proposal")?;
     let second = made(&scenario, best)?;
-    let joint = calibrate_runs(&[run(&first), run(&second)], &options, |_| ())?;
+    let joint = calibrate_runs(&[run_of(&first), run_of(&second)], &options, |_| ())?;
     let both = best.outlook.coefficients.iter().zip(joint.coefficients());
     Ok(both
         .map(|(predicted, found)| found.sigma / predicted.sigma)
@@ -145,13 +145,13 @@ fn sets(seed: u64) -> Result<Sets, Error> {
             durations_s: vec![share * scenario.duration_s],
             ..PlanOptions::default()
         };
-        let planned = plan(fitted, &run(&first), &named, &options)?;
+        let planned = plan(fitted, &run_of(&first), &named, &options)?;
         let now = planned.now.sets.first().map(|set| set.mean_size);
         sets.now = now.filter(|size| *size > 1.0);
         let best = planned.proposals.first().ok_or("no proposal")?;
         let predicted = best.outlook.sets.first().ok_or("no set")?.mean_size;
-        let (one, second, calibration) = (run(&first), made(&scenario, best)?, Options::default());
-        let compared = compare(fitted, &one, &run(&second), None, &named, &calibration)?;
+        let (one, second, calibration) = (run_of(&first), made(&scenario, best)?, Options::default());
+        let compared = compare(fitted, &one, &run_of(&second), None, &named, &calibration)?;
         let left = compared.sets.first().ok_or("no set")?;
         let left = left.iter().filter(|member| member.stays).count();
         *after = [predicted, left as f64];

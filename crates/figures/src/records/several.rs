@@ -6,13 +6,13 @@ use gyrocal_diagnosis::result::Finding;
 use gyrocal_diagnosis::{
     DiagnoseOptions, Gate, RecordToDiagnose, Verdict, diagnose, diagnose_together,
 };
-use gyrocal_evaluation::{InjectedEffect, effect_of, same_or_equivalent, testable_effects};
+use gyrocal_evaluation::{InjectedEffect, effect_of, run_of, set_holds, testable_effects};
 use gyrocal_setup::PlatformKind;
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{Coefficients, InitialAttitude, Scenario, Simulation, simulate};
 use serde::{Deserialize, Serialize};
 
-use super::{oracle, run};
+use super::oracle;
 use crate::error::Error;
 use crate::figure::Figure;
 use crate::harness::sources::{DIAGNOSIS, of};
@@ -207,29 +207,18 @@ fn hidden(seed: u64, records: u64, strength: f64) -> Result<Named, Error> {
     let simulations = simulated(&scenarios)?;
     let options = DiagnoseOptions::default();
     let together = diagnose_together(checked(&simulations, &options), &options, |_| ())?.result;
-    let mut sets = together.causes().map(members);
-    let set = sets.find(|set| set.iter().any(|id| same_or_equivalent(effect.id, id)));
-    let shapes = set.iter().flatten();
-    let shapes = shapes.filter(|id| effect_of(id).is_some_and(|member| member.shape().is_some()));
+    let set = together.causes().find(|cause| set_holds(cause, effect.id));
+    let members = || set.into_iter().flat_map(Finding::set);
+    let shapes = members().filter(|id| effect_of(id).is_some_and(|member| member.shape().is_some()));
     let first = diagnose(&simulations[0].record, &simulations[0].bench, &options)?;
     Ok(Named {
         together: set.is_some(),
-        set: set.as_ref().map_or(0, Vec::len),
-        alone: first
-            .result
-            .causes()
-            .next()
-            .map(|cause| members(cause).len()),
+        set: members().count(),
+        alone: first.result.causes().next().map(|cause| cause.set().count()),
         in_time: effect.kind != EffectKind::Constant,
         shapes: shapes.count(),
         oracle: oracle::set_size(&scenarios[0], &simulations, &injected)?,
     })
-}
-
-/// The ids of the set of a finding.
-fn members(cause: &Finding) -> Vec<&str> {
-    let others = cause.alternatives.iter().map(|other| &*other.effect);
-    core::iter::once(&*cause.effect).chain(others).collect()
 }
 
 /// Whether four records of the nominal model show anything together.
@@ -253,7 +242,7 @@ fn checked<'a>(
         name: format!("record {}", index + 1),
         gate: Gate::new(
             PlatformKind::Stabilised,
-            &run(simulation),
+            &run_of(simulation),
             &options.calibration,
         ),
         bench: &simulation.bench,

@@ -8,8 +8,8 @@ use gyrocal_diagnosis::Diagnosis;
 use gyrocal_diagnosis::error_budget::CONFIDENCE_SET_COVERAGE;
 use gyrocal_diagnosis::set_coverage::SET_COVERAGE;
 use gyrocal_evaluation::{
-    InjectedEffect, effect_of, inject_one_of, same_or_equivalent, sets_without_walks,
-    testable_effects,
+    InjectedEffect, effect_of, inject_one_of, run_of, same_or_equivalent, set_holds,
+    sets_without_walks, testable_effects,
 };
 use gyrocal_hypothesis::{FittedModel, HypothesisSet, ModelExtension};
 use gyrocal_statistics::deviates::Draw;
@@ -18,7 +18,7 @@ use gyrocal_truth::{Simulation, Temperature, simulate};
 use serde::{Deserialize, Serialize};
 
 use super::drawn::{self, noisy};
-use super::judged::{self, coefficient_rows, coefficients, diagnosed, holds, may_walk, run};
+use super::judged::{self, coefficient_rows, coefficients, diagnosed, may_walk};
 use crate::error::Error;
 use crate::figure::Figure;
 use crate::harness::sources::Sources;
@@ -255,7 +255,7 @@ fn record(cell: &Cell, seed: u64) -> Result<Caused, Error> {
     let found = diagnosed(&simulation)?;
     let id = cause.effect.id;
     let causes: Vec<_> = found.result.causes().collect();
-    let mut holding = causes.iter().filter(|finding| holds(finding, id));
+    let mut holding = causes.iter().filter(|finding| set_holds(finding, id));
     let oracle = sets_without_walks(&found, &simulation)?;
     let holds_it = |set: &Vec<&str>| set.iter().any(|effect| same_or_equivalent(effect, id));
     let stated = coefficients(&found.result, &simulation);
@@ -284,7 +284,7 @@ fn true_sigmas(
     simulation: &Simulation,
     cause: &InjectedEffect,
 ) -> Result<Vec<f64>, Error> {
-    let run = run(simulation);
+    let run = run_of(simulation);
     let mut noise = found.noise_model.clone();
     noise.gyro_walk_deg_per_h_per_sqrt_h = [0.0; 3];
     let nominal = FittedPlatform::nominal(&run, &Options::default(), &noise)?;

@@ -2,10 +2,9 @@
 
 use gyrocal::Effect;
 use gyrocal::effect::EffectKind;
-use gyrocal_calibration::Run;
 use gyrocal_diagnosis::result::{DiagnosisResult, Finding};
 use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, diagnose};
-use gyrocal_evaluation::{effect_of, same_or_equivalent};
+use gyrocal_evaluation::effect_of;
 use gyrocal_record::AXES;
 use gyrocal_statistics::{NORMAL_97_5, Proportion};
 use gyrocal_truth::Simulation;
@@ -21,32 +20,15 @@ const COEFFICIENTS: f64 = 0.93;
 const COEFFICIENTS_REASON: &str =
     "intervals of 95 %, two points for noise and causes that are not known";
 
-pub(super) fn run(simulation: &Simulation) -> Run<'_> {
-    Run {
-        record: &simulation.record,
-        bench: &simulation.bench,
-    }
-}
-
 pub(super) fn diagnosed(simulation: &Simulation) -> Result<Diagnosis<'_>, Error> {
     let options = DiagnoseOptions::default();
     Ok(diagnose(&simulation.record, &simulation.bench, &options)?)
 }
 
-/// Ids of the confidence set of a finding.
-fn set(finding: &Finding) -> impl Iterator<Item = &str> {
-    let others = finding.alternatives.iter();
-    core::iter::once(&*finding.effect).chain(others.map(|other| &*other.effect))
-}
-
-/// Whether a set holds a cause or an exact equivalent of it.
-pub(super) fn holds(finding: &Finding, id: &str) -> bool {
-    set(finding).any(|member| same_or_equivalent(member, id))
-}
-
 /// Whether a set holds a random walk: of this gyro, or of any without one.
 pub(super) fn may_walk(finding: &Finding, gyro: Option<usize>) -> bool {
-    let mut walks = set(finding)
+    let mut walks = finding
+        .set()
         .filter_map(effect_of)
         .filter(|effect| effect.kind == EffectKind::RandomWalk);
     walks.any(|walk| gyro.is_none() || walk.rate() == gyro)

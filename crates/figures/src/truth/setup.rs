@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use gyrocal_calibration::Options;
 use gyrocal_diagnosis::{DiagnoseOptions, DiagnosisError, Gate, diagnose};
-use gyrocal_evaluation::{Statistic, inject_any};
+use gyrocal_evaluation::{Statistic, inject_any, run_of};
 use gyrocal_setup::{PlatformKind, check_setup};
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_statistics::{Proportion, median};
@@ -13,7 +13,6 @@ use gyrocal_truth::{InitialAttitude, Scenario, Simulation, simulate};
 use serde::{Deserialize, Serialize};
 
 use super::drawn::{self, coefficients};
-use super::judged::{self, run};
 use crate::error::Error;
 use crate::figure::Figure;
 use crate::harness::sources::Sources;
@@ -22,7 +21,7 @@ use crate::harness::{Context, Population, Row};
 
 const SOURCES: Sources = of(
     &["crates/diagnosis", "crates/evaluation"],
-    &[file!(), drawn::FILE, judged::FILE],
+    &[file!(), drawn::FILE],
 );
 
 /// Strength of the effects in every other sound record, in sigmas of their own bound.
@@ -134,7 +133,7 @@ fn sound(context: &Context) -> Result<Vec<Figure>, Error> {
 /// Kinds that the gate tells, fits included.
 fn told(simulation: &Simulation) -> Vec<String> {
     let kind = PlatformKind::Stabilised;
-    let found = Gate::new(kind, &run(simulation), &Options::default());
+    let found = Gate::new(kind, &run_of(simulation), &Options::default());
     found.problems.into_iter().map(|one| one.kind).collect()
 }
 

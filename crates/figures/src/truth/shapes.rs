@@ -4,13 +4,13 @@
 use gyrocal::EFFECTS;
 use gyrocal::effect::EffectKind;
 use gyrocal_diagnosis::{DiagnoseOptions, fit_effects};
-use gyrocal_evaluation::{effect_of, inject_one_of};
+use gyrocal_evaluation::{effect_of, inject_one_of, run_of};
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{Simulation, simulate};
 use serde::{Deserialize, Serialize};
 
 use super::drawn::{self, noisy};
-use super::judged::{self, diagnosed, run, within};
+use super::judged::{self, diagnosed, within};
 use crate::error::Error;
 use crate::figure::Figure;
 use crate::harness::sources::Sources;
@@ -90,7 +90,7 @@ fn record(seed: u64) -> Result<Shaped, Error> {
 fn fitted_interval(simulation: &Simulation, effect: &str, name: &str) -> Option<Vec<[f64; 2]>> {
     let effects = [effect.to_owned()];
     let options = DiagnoseOptions::default();
-    let fitted = fit_effects(&run(simulation), None, &effects, &options).ok()?;
+    let fitted = fit_effects(&run_of(simulation), None, &effects, &options).ok()?;
     let mut parameters = fitted.effects.into_iter().next()?.parameters.into_iter();
     parameters.find(|own| own.name == name)?.interval
 }

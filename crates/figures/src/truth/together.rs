@@ -1,13 +1,13 @@
 //! One cause of the catalogue beside random walks of some gyros, the noise misdeclared in half of the
 //! records.
 
-use gyrocal_evaluation::inject_any;
+use gyrocal_evaluation::{inject_any, set_holds};
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{Scenario, simulate};
 use serde::{Deserialize, Serialize};
 
 use super::drawn::{self, misdeclare, plain, walk};
-use super::judged::{self, coefficient_rows, coefficients, diagnosed, holds, surely_not_walks};
+use super::judged::{self, coefficient_rows, coefficients, diagnosed, surely_not_walks};
 use crate::error::Error;
 use crate::figure::Figure;
 use crate::harness::sources::Sources;
@@ -78,13 +78,13 @@ fn record(seed: u64) -> Result<Mixed, Error> {
     let simulation = simulate(&with)?;
     let found = diagnosed(&simulation)?.result;
     let id = cause.effect.id;
-    let wrong = surely_not_walks(&found).filter(|one| !holds(one, id));
+    let wrong = surely_not_walks(&found).filter(|one| !set_holds(one, id));
     let own = cause.effect.rate();
     let covered = coefficients(&found, &simulation).into_iter();
     Ok(Mixed {
         wrong: wrong.map(|one| one.effect.clone()).collect(),
         walks_itself: own.is_some_and(|rate| walking.contains(&rate)),
-        in_set: found.causes().any(|one| holds(one, id)),
+        in_set: found.causes().any(|one| set_holds(one, id)),
         covered: covered.map(|one| one.covered).collect(),
     })
 }
