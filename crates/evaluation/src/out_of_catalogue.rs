@@ -81,7 +81,11 @@ fn diagnosed(
         let factor = strength / reached;
         if (factor - 1.0).abs() < NEAR || corrections == CORRECTIONS {
             return Ok(Some(RecordScore {
-                hidden: vec![injected_score(&record.effect, reached)],
+                hidden: vec![InjectedScore {
+                    effect: record.effect.id,
+                    strength: reached,
+                    ..InjectedScore::default()
+                }],
                 ..findings_score(&found.result)
             }));
         }
@@ -230,35 +234,14 @@ fn named_effects(extension: &ModelExtension) -> ModelExtension {
     }
 }
 
-fn injected_score(effect: &UnlistedEffect, strength: f64) -> InjectedScore {
-    let mut parameters = vec![("size".to_owned(), effect.size)];
-    let further = effect.further.iter();
-    parameters.extend(further.map(|(name, value)| ((*name).to_owned(), *value)));
-    InjectedScore {
-        effect: effect.id.clone(),
-        parameters,
-        strength,
-        in_set: false,
-        first_cosine: 0.0,
-        covered: None,
-        onset_error: None,
-        deficit: None,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::scenario;
+    use crate::scenario::tests::short;
 
     #[test]
     fn every_kind_is_scaled_to_its_strength() {
-        let scenario = Scenario {
-            duration_s: 86_400.0,
-            interval_s: 300.0,
-            gaps_s: Vec::new(),
-            ..scenario(3)
-        };
+        let scenario = short(3);
         let clean = simulate(&scenario).unwrap();
         let without = whitened_residuals(&clean).unwrap();
         let mut scaled = 0;
@@ -284,12 +267,7 @@ mod tests {
 
     #[test]
     fn beside_a_random_walk_a_slow_drift_is_nothing_and_an_accelerometer_what_it_was() {
-        let scenario = Scenario {
-            duration_s: 86_400.0,
-            interval_s: 300.0,
-            gaps_s: Vec::new(),
-            ..scenario(3)
-        };
+        let scenario = short(3);
         // Strength without a walk, and beside one of each gyro that does in a day what the effect does.
         let strengths = |kind: UnlistedKind| {
             let random = &mut Draw::new(5, 0);

@@ -207,17 +207,12 @@ mod tests {
 
     use super::*;
     use crate::injection::{inject, nominal_fit};
-    use crate::scenario::scenario;
+    use crate::scenario::tests::short;
 
     /// The coefficients beside an effect, by the linearised fit and by a fit of the extended model.
     #[test]
     fn coefficients_beside_an_effect_are_those_of_a_fit_with_it() {
-        let scenario = Scenario {
-            duration_s: 86_400.0,
-            interval_s: 300.0,
-            gaps_s: Vec::new(),
-            ..scenario(4)
-        };
+        let scenario = short(4);
         let effect = EFFECTS.iter().find(|of| of.id == "gyro_x.g_y").unwrap();
         let injected = inject(&scenario, &[(effect, None)], 8.0, 1.0, &mut Draw::new(1, 2))
             .unwrap()

@@ -1,4 +1,4 @@
-//! Score of one record: a line in the file of results. Serialised names are those of the file.
+//! Score of one record: a line in the file of results.
 
 use serde::{Deserialize, Serialize};
 
@@ -10,7 +10,7 @@ use crate::coefficient_score::CoefficientScore;
 pub const SAME_CLASS_COSINE: f64 = 0.9;
 
 /// Injected effects and findings of one record.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct RecordScore {
     /// Injected effects.
     pub hidden: Vec<InjectedScore>,
@@ -25,7 +25,6 @@ pub struct RecordScore {
     /// Size of the first confidence set if the noise is known; `None` without a finding.
     pub oracle_set_size: Option<usize>,
     /// Whether a set of a search that knows that no rate walks holds the effect; `None` where it was not made.
-    #[serde(default)]
     pub oracle_in_set: Option<bool>,
     /// Hypotheses next to the best in the first search, each with twice its log-likelihood deficit,
     /// search penalties included; without exact equivalents of the best and of each other.
@@ -33,19 +32,16 @@ pub struct RecordScore {
     /// Drift coefficients of the diagnosis against the true ones; `None` where they were not compared.
     pub coefficients: Option<CoefficientScore>,
     /// Log score that the extended model gains in cross-validation, nats; `None` without one.
-    #[serde(default)]
     pub gain_nats: Option<f64>,
     /// Results of the baseline methods.
     pub methods: Vec<BaselineScore>,
 }
 
 /// An injected effect and its recovery.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct InjectedScore {
     /// Id of the effect.
     pub effect: String,
-    /// Name and value of each parameter.
-    pub parameters: Vec<(String, f64)>,
     /// Strength in sigmas of its own bound; of an effect that is not in the catalogue, given the
     /// findings.
     pub strength: f64,
@@ -64,30 +60,19 @@ pub struct InjectedScore {
 }
 
 /// A finding of the diagnosis.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct FindingScore {
     /// Id of the effect.
     pub effect: String,
-    /// Its significance in sigmas.
-    pub z: f64,
-    /// Name and estimate of each parameter.
-    pub parameters: Vec<(String, f64)>,
-    /// All other members of the confidence set, each with twice its log-likelihood deficit.
-    #[serde(rename = "rivals")]
-    pub alternatives: Vec<(String, f64)>,
-    /// Exact equivalents that the finding lists.
-    pub equivalents: Vec<String>,
+    /// All other members of the confidence set.
+    pub alternatives: Vec<String>,
     /// `true` if the effect has exact equivalents and the finding lists none.
-    #[serde(rename = "alone")]
     pub lacks_equivalents: bool,
     /// Probability that the cause is not in the catalogue; `None` if the search was cut.
-    #[serde(default)]
     pub none_of_these: Option<f64>,
     /// Log score that it gains in cross-validation, nats; `None` where that was not asked for.
-    #[serde(default)]
     pub gain_nats: Option<f64>,
     /// Whether the extended model has it; `None` where there was no cross-validation.
-    #[serde(default)]
     pub accepted: Option<bool>,
 }
 
@@ -97,7 +82,6 @@ pub struct BaselineScore {
     /// Name of the method.
     pub method: String,
     /// Its result.
-    #[serde(rename = "called")]
     pub result: BaselineResult,
     /// As [`InjectedScore::first_cosine`], of the first injected effect.
     pub first_cosine: f64,
@@ -147,11 +131,8 @@ impl FindingScore {
     /// `true` if the confidence set contains an effect or an exact equivalent of it.
     #[must_use]
     pub fn holds(&self, effect: &str) -> bool {
-        same_or_equivalent(&self.effect, effect)
-            || self
-                .alternatives
-                .iter()
-                .any(|(other, _)| same_or_equivalent(other, effect))
+        let mut set = core::iter::once(&self.effect).chain(&self.alternatives);
+        set.any(|member| same_or_equivalent(member, effect))
     }
 }
 
@@ -162,30 +143,17 @@ pub(crate) mod tests {
     pub(crate) fn found(effect: &str, alternatives: &[&str]) -> FindingScore {
         FindingScore {
             effect: effect.to_owned(),
-            z: 8.0,
-            parameters: Vec::new(),
-            alternatives: alternatives
-                .iter()
-                .map(|other| ((*other).to_owned(), 1.0))
-                .collect(),
-            equivalents: Vec::new(),
-            lacks_equivalents: false,
-            none_of_these: None,
-            gain_nats: None,
-            accepted: None,
+            alternatives: alternatives.iter().map(|&other| other.to_owned()).collect(),
+            ..FindingScore::default()
         }
     }
 
     fn hidden(effect: &str) -> InjectedScore {
         InjectedScore {
             effect: effect.to_owned(),
-            parameters: Vec::new(),
-            strength: 8.0,
             in_set: true,
             first_cosine: 1.0,
-            covered: None,
-            onset_error: None,
-            deficit: None,
+            ..InjectedScore::default()
         }
     }
 
@@ -194,14 +162,7 @@ pub(crate) mod tests {
             hidden: vec![hidden("gyro_x.g_y"), hidden("gyro_y.ramp")],
             verdict: "effects-found".to_owned(),
             findings,
-            noise: Vec::new(),
-            unexplained: None,
-            oracle_set_size: None,
-            oracle_in_set: None,
-            nearest: Vec::new(),
-            coefficients: None,
-            gain_nats: None,
-            methods: Vec::new(),
+            ..RecordScore::default()
         }
     }
 

@@ -31,15 +31,26 @@ pub fn scenario(number: u64) -> Scenario {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::scenario;
+pub(crate) mod tests {
+    use super::*;
+
+    /// A record of one day with its temperature: quick to simulate, and long enough for every effect.
+    pub(crate) fn short(number: u64) -> Scenario {
+        Scenario {
+            duration_s: 86_400.0,
+            interval_s: 300.0,
+            gaps_s: Vec::new(),
+            temperature: Some(Temperature::default()),
+            ..scenario(number)
+        }
+    }
 
     #[test]
     fn all_listed_properties_of_scenarios_vary() {
         // Of 64 the rarest property, one interval of eight, is missing with a chance of 2e-4; the
         // population is fixed.
         let all: Vec<_> = (0..64).map(scenario).collect();
-        let with = |of: &dyn Fn(&gyrocal_truth::Scenario) -> bool| {
+        let with = |of: &dyn Fn(&Scenario) -> bool| {
             let count = all.iter().filter(|scenario| of(scenario)).count();
             assert!(0 < count && count < all.len(), "{count} of {}", all.len());
         };

@@ -181,7 +181,6 @@ fn baseline_score(
 /// The findings of a diagnosis, without the comparison with injected effects.
 pub(crate) fn findings_score(found: &DiagnosisResult) -> RecordScore {
     RecordScore {
-        hidden: Vec::new(),
         verdict: match found.verdict {
             Verdict::EffectsFound => "effects-found",
             Verdict::Unexplained => "unexplained",
@@ -196,15 +195,12 @@ pub(crate) fn findings_score(found: &DiagnosisResult) -> RecordScore {
         unexplained: found
             .is_unexplained()
             .then(|| found.remainder.description.clone()),
-        oracle_set_size: None,
-        oracle_in_set: None,
         nearest: nearest(&found.ranking),
-        coefficients: None,
         gain_nats: found
             .gain
             .as_ref()
             .map(|gain| gain.cross_validated_log_score_nats),
-        methods: Vec::new(),
+        ..RecordScore::default()
     }
 }
 
@@ -233,22 +229,7 @@ fn finding_score(finding: &Finding) -> FindingScore {
         effect_of(&finding.effect).is_some_and(|effect| !effect.equivalents.is_empty());
     FindingScore {
         effect: finding.effect.clone(),
-        z: finding.z,
-        parameters: finding
-            .parameters
-            .iter()
-            .map(|parameter| (parameter.name.to_owned(), parameter.estimate))
-            .collect(),
-        alternatives: finding
-            .alternatives
-            .iter()
-            .map(|other| (other.effect.clone(), 2.0 * other.log_likelihood_deficit))
-            .collect(),
-        equivalents: finding
-            .equivalents
-            .iter()
-            .map(|equivalent| equivalent.effect.clone())
-            .collect(),
+        alternatives: finding.set().skip(1).map(str::to_owned).collect(),
         lacks_equivalents: has_equivalents && finding.equivalents.is_empty(),
         none_of_these: finding.none_of_these,
         gain_nats: finding.gain_nats,
@@ -287,16 +268,8 @@ fn injected_score(
         .ranking
         .iter()
         .find(|ranked| same_or_equivalent(&ranked.effect, id));
-    let names = injected
-        .effect
-        .parameters
-        .iter()
-        .map(|parameter| parameter.name.to_owned());
     InjectedScore {
         effect: id.to_owned(),
-        parameters: names
-            .zip(injected.sizes.iter().copied().chain(injected.shape))
-            .collect(),
         strength: truth.strength,
         in_set,
         first_cosine,

@@ -33,7 +33,8 @@ struct Entry {
     /// Variable that names a program in place of these.
     variable: Option<&'static str>,
     serves: fn(&Path) -> bool,
-    install: &'static str,
+    /// Packages of Debian that bring it.
+    packages: &'static str,
 }
 
 /// Value of an environment variable.
@@ -51,64 +52,37 @@ impl Tool {
         Self::Spark,
     ];
 
+    #[rustfmt::skip] // a table
     fn entry(self) -> Entry {
-        let answers = |program: &Path| succeeds(program, &["--version"]);
         match self {
             Self::Chromium => Entry {
-                purpose: "pages in a browser",
-                names: &["chromium", "chromium-browser", "google-chrome"],
                 variable: Some("GYROCAL_CHROMIUM"),
-                serves: answers,
-                install: "apt-get install chromium",
+                ..entry("pages in a browser", &["chromium", "chromium-browser", "google-chrome"], "chromium")
             },
-            Self::Valgrind => Entry {
-                purpose: "instruction counts",
-                names: &["valgrind"],
-                variable: None,
-                serves: answers,
-                install: "apt-get install valgrind",
-            },
+            Self::Valgrind => entry("instruction counts", &["valgrind"], "valgrind"),
             Self::TargetCompiler => Entry {
-                purpose: "builds for a Cortex-M4F",
-                names: &["rustc"],
                 variable: Some("GYROCAL_TARGET_RUSTC"),
                 serves: has_sources_of_core,
-                install: "apt-get install rustc-web rust-web-src",
+                ..entry("builds for a Cortex-M4F", &["rustc"], "rustc-web rust-web-src")
             },
-            Self::ArmGcc => Entry {
-                purpose: "builds for a Cortex-M4F",
-                names: &["arm-none-eabi-gcc"],
-                variable: None,
-                serves: answers,
-                install: "apt-get install gcc-arm-none-eabi",
-            },
-            Self::Qemu => Entry {
-                purpose: "firmware on an emulated Cortex-M4F",
-                names: &["qemu-system-arm"],
-                variable: None,
-                serves: answers,
-                install: "apt-get install qemu-system-arm",
-            },
+            Self::ArmGcc => entry("builds for a Cortex-M4F", &["arm-none-eabi-gcc"], "gcc-arm-none-eabi"),
+            Self::Qemu => entry("firmware on an emulated Cortex-M4F", &["qemu-system-arm"], "qemu-system-arm"),
             Self::Python => Entry {
-                purpose: "packages of Python",
-                names: &[
-                    "python3.11",
-                    "python3.12",
-                    "python3.13",
-                    "python3.14",
-                    "python3",
-                ],
-                variable: None,
                 serves: |program| succeeds(program, &["-I", "-c", "import ensurepip, venv"]),
-                install: "apt-get install python3 python3-venv",
+                ..entry(
+                    "packages of Python",
+                    &["python3.11", "python3.12", "python3.13", "python3.14", "python3"],
+                    "python3 python3-venv",
+                )
             },
             Self::Spark => Entry {
-                purpose: "a fleet of records under Spark",
-                names: &[],
                 variable: Some("GYROCAL_SPARK_PYTHON"),
                 serves: |program| succeeds(program, &["-c", "import pyspark, gyrocal"]),
-                install: "apt-get install default-jre-headless, and pip install of pyspark and the wheel in a \
-                          virtual environment",
+                ..entry(
+                    "a fleet of records under Spark",
+                    &[],
+                    "default-jre-headless, and pip install of pyspark and the wheel in a virtual environment",
+                )
             },
         }
     }
@@ -119,13 +93,24 @@ impl Tool {
             purpose,
             names,
             variable,
-            install,
+            packages,
             ..
         } = self.entry();
         let name = names.first().copied().or(variable).unwrap_or_default();
         let or = variable.map(|variable| format!("; or name a program in {variable}"));
         let or = or.unwrap_or_default();
-        format!("{name} is missing, for {purpose}: {install}{or}")
+        format!("{name} is missing, for {purpose}: apt-get install {packages}{or}")
+    }
+}
+
+/// A program that is one if it says its version.
+fn entry(purpose: &'static str, names: &'static [&'static str], packages: &'static str) -> Entry {
+    Entry {
+        purpose,
+        names,
+        variable: None,
+        serves: |program| succeeds(program, &["--version"]),
+        packages,
     }
 }
 

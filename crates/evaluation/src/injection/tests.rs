@@ -2,18 +2,7 @@ use gyrocal_calibration::rows;
 use gyrocal_hypothesis::{FittedModel, information};
 
 use super::*;
-use crate::scenario::scenario;
-
-/// A record of one day: quick to simulate, and long enough for every effect.
-fn short(number: u64) -> Scenario {
-    Scenario {
-        duration_s: 86_400.0,
-        interval_s: 300.0,
-        gaps_s: Vec::new(),
-        temperature: Some(gyrocal_truth::Temperature::default()),
-        ..scenario(number)
-    }
-}
+use crate::scenario::tests::short;
 
 /// The strength of an effect by the information of the diagnosis, which is computed independently.
 #[test]

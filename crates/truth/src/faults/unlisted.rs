@@ -106,7 +106,7 @@ pub struct UnlistedEffect {
     /// The largest that it may have: larger ones make another record.
     pub largest_size: f64,
     /// Names and values of all other parameters.
-    pub further: Vec<(&'static str, f64)>,
+    further: Vec<(&'static str, f64)>,
     is_gyro: bool,
     /// Axis and value of an effect of unit size; `None` of an effect that the simulator knows by its id.
     unit: Option<(usize, Arc<Unit>)>,
