@@ -1,5 +1,6 @@
 //! Statistics of the calibration over many trials.
 
+use gyrocal_record::Manifest;
 use gyrocal_statistics::{
     NORMAL_97_5, Proportion, mean, mean_square_band, median, rms_ratio_interval, root_mean_square,
     standard_error,
@@ -14,6 +15,22 @@ use crate::campaign::{Failure, Outcome};
 const BAND: f64 = 0.999;
 /// Confidence of the intervals of ratios and shares.
 const CONFIDENCE: f64 = 0.95;
+
+/// Result of `gyrocal monte-carlo`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct MonteCarloReport {
+    /// `SCHEMA_VERSION` of `gyrocal-record` at the time of writing.
+    pub schema_version: u32,
+    /// Program, inputs and command that made the result.
+    pub manifest: Manifest,
+    /// The first seed, and the one after the last.
+    pub seeds: [u64; 2],
+    /// `true` if seeds number the scenarios of a random population.
+    pub population: bool,
+    /// Statistics over all runs.
+    pub summary: CalibrationSummary,
+}
 
 /// Statistics of the calibration over all runs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -104,16 +121,6 @@ pub struct CoefficientSummary {
     pub coverage: Option<MeasuredValue>,
 }
 
-/// Normalised squares of one run.
-#[derive(Clone, Copy)]
-struct SumOfSquares {
-    sum: f64,
-    /// Degrees of freedom of the sum.
-    degrees: usize,
-    /// Number of squares that the sum is averaged over.
-    parts: usize,
-}
-
 impl BandedMean {
     /// `true` if the mean lies in the band.
     #[must_use]
@@ -121,20 +128,17 @@ impl BandedMean {
         self.band[0] <= self.mean && self.mean <= self.band[1]
     }
 
-    /// Mean over runs; `None` without a degree of freedom.
-    fn of(runs: &[SumOfSquares]) -> Option<Self> {
-        let squares: f64 = runs.iter().map(|run| run.sum).sum();
-        let degrees: usize = runs.iter().map(|run| run.degrees).sum();
-        let parts: usize = runs.iter().map(|run| run.parts).sum();
-        let each: Vec<f64> = runs
-            .iter()
-            .filter(|run| run.parts > 0)
-            .map(|run| run.sum / run.parts as f64)
-            .collect();
-        (degrees > 0 && parts > 0).then(|| Self {
-            mean: squares / parts as f64,
-            expected: degrees as f64 / parts as f64,
-            band: mean_square_band(degrees as f64, parts as f64, BAND),
+    /// Mean over runs, each with a sum of normalised squares, its degrees of freedom, and the number of squares that
+    /// it is averaged over; `None` without a degree of freedom.
+    fn of(runs: &[[f64; 3]]) -> Option<Self> {
+        let total = |which: usize| runs.iter().map(|run| run[which]).sum::<f64>();
+        let [squares, degrees, parts] = [0, 1, 2].map(total);
+        let each = runs.iter().filter(|run| run[2] > 0.0);
+        let each: Vec<f64> = each.map(|run| run[0] / run[2]).collect();
+        (degrees > 0.0 && parts > 0.0).then(|| Self {
+            mean: squares / parts,
+            expected: degrees / parts,
+            band: mean_square_band(degrees, parts, BAND),
             median: median(&each),
         })
     }
@@ -165,27 +169,18 @@ impl CalibrationSummary {
     #[must_use]
     pub fn of(outcome: &Outcome<CalibrationTrial>) -> Self {
         let trials: Vec<&CalibrationTrial> = outcome.successes().map(|(_, trial)| trial).collect();
-        let banded = |of: fn(&CalibrationTrial) -> SumOfSquares| {
+        let banded = |of: fn(&CalibrationTrial) -> [f64; 3]| {
             BandedMean::of(&trials.iter().map(|trial| of(trial)).collect::<Vec<_>>())
         };
         Self {
             runs: trials.len(),
             failures: outcome.failures().collect(),
-            nees_determined: banded(|trial| SumOfSquares {
-                sum: trial.nees_determined,
-                degrees: trial.determined.iter().filter(|yes| **yes).count(),
-                parts: 1,
+            nees_determined: banded(|trial| {
+                let determined = trial.determined.iter().filter(|yes| **yes);
+                [trial.nees_determined, determined.count() as f64, 1.0]
             }),
-            nees: banded(|trial| SumOfSquares {
-                sum: trial.nees,
-                degrees: 9,
-                parts: 1,
-            }),
-            nis: banded(|trial| SumOfSquares {
-                sum: trial.nis_sum,
-                degrees: trial.values,
-                parts: trial.rows,
-            }),
+            nees: banded(|trial| [trial.nees, 9.0, 1.0]),
+            nis: banded(|trial| [trial.nis_sum, trial.values as f64, trial.rows as f64]),
             consistent: MeasuredValue::share(trials.iter().map(|trial| trial.consistent)),
             coefficients: Coefficients::NONE
                 .named()
@@ -203,21 +198,17 @@ fn coefficient(
     name: &str,
     unit: &str,
 ) -> CoefficientSummary {
-    let determined: Vec<&CalibrationTrial> = trials
-        .iter()
-        .filter(|trial| trial.determined[index])
-        .copied()
-        .collect();
+    let determined = trials.iter().filter(|trial| trial.determined[index]);
+    let determined: Vec<&CalibrationTrial> = determined.copied().collect();
     let errors: Vec<f64> = determined.iter().map(|trial| trial.error[index]).collect();
     let sigmas: Vec<f64> = determined.iter().map(|trial| trial.sigma[index]).collect();
-    let over = |sigma: &dyn Fn(&CalibrationTrial) -> Option<f64>| {
-        determined
-            .iter()
-            .map(|trial| Some(trial.error[index] / sigma(trial)?))
-            .collect::<Option<Vec<f64>>>()
-    };
-    let in_sigmas = over(&|trial| Some(trial.sigma[index])).unwrap_or_default();
-    let in_bounds = over(&|trial| Some(trial.bound_sigma?[index])).unwrap_or_default();
+    let over = |(error, sigma): (&f64, &f64)| error / sigma;
+    let in_sigmas: Vec<f64> = errors.iter().zip(&sigmas).map(over).collect();
+    let bounds = determined
+        .iter()
+        .map(|trial| Some(trial.bound_sigma?[index]));
+    let bounds = bounds.collect::<Option<Vec<f64>>>().unwrap_or_default();
+    let in_bounds: Vec<f64> = errors.iter().zip(&bounds).map(over).collect();
     // Without values these are NaN, which JSON does not have.
     let finite = |value: f64| value.is_finite().then_some(value);
     CoefficientSummary {

@@ -1,7 +1,6 @@
 //! Campaigns: one job over a range of seeds, in parallel and resumable.
 
 mod fingerprint;
-mod program;
 mod store;
 
 use std::collections::BTreeMap;
@@ -17,8 +16,7 @@ use rayon::prelude::*;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-pub use fingerprint::Fingerprint;
-pub use program::program;
+pub use fingerprint::{Fingerprint, program};
 
 use crate::error::EvaluationError;
 use store::{Finished, Store, encode};

@@ -88,7 +88,6 @@ mod error;
 #[cfg(feature = "field")]
 mod field;
 mod injection;
-mod monte_carlo_report;
 mod oracle;
 mod out_of_catalogue;
 mod population;
@@ -101,7 +100,9 @@ mod statistic;
 
 pub use baseline::{BaselineMethod, BaselineResult};
 pub use budget_trial::{BudgetTrial, SpreadTrial, TrueCoefficients};
-pub use calibration_summary::{BandedMean, CalibrationSummary, CoefficientSummary, MeasuredValue};
+pub use calibration_summary::{
+    BandedMean, CalibrationSummary, CoefficientSummary, MeasuredValue, MonteCarloReport,
+};
 pub use calibration_trial::CalibrationTrial;
 pub use campaign::{Campaign, Failure, Fingerprint, Outcome, Progress, program};
 pub use catalogue::{constant_of_channel, effect_family, effect_of, same_or_equivalent, set_holds};
@@ -118,7 +119,6 @@ pub use injection::{
     InjectedEffect, draw_shape, inject, inject_any, inject_into, inject_one_of, nominal_fit,
     run_of, testable_effects,
 };
-pub use monte_carlo_report::MonteCarloReport;
 pub use oracle::sets_without_walks;
 pub use out_of_catalogue::UnlistedRecord;
 pub use population::PopulationCell;

@@ -43,15 +43,13 @@ pub(crate) fn score_out_of_catalogue(
     strength: f64,
     random: &mut Draw,
 ) -> Result<RecordScore, EvaluationError> {
-    let clean = simulate(scenario)?;
-    let residuals = whitened_residuals(&clean)?;
     first_of(MAX_DRAWS, strength, |attempt| {
         let kinds = UnlistedKind::ALL;
         let kind = kinds[(number as usize + attempt) % kinds.len()];
-        let mut effect = UnlistedEffect::draw(kind, scenario, random)?;
-        match scale(scenario, &residuals, &mut effect, strength)? {
-            true => diagnosed(scenario, clean.clone(), effect, strength),
-            false => Ok(None),
+        let effect = UnlistedEffect::draw(kind, scenario, random)?;
+        match UnlistedRecord::scaled(scenario, effect, strength)? {
+            Some(record) => diagnosed(scenario, record, strength),
+            None => Ok(None),
         }
     })
 }
@@ -61,16 +59,9 @@ pub(crate) fn score_out_of_catalogue(
 /// be fitted to the record without it.
 fn diagnosed(
     scenario: &Scenario,
-    clean: Simulation,
-    effect: UnlistedEffect,
+    mut record: UnlistedRecord,
     strength: f64,
 ) -> Result<Option<RecordScore>, EvaluationError> {
-    let with = effect.simulate(scenario)?;
-    let mut record = UnlistedRecord {
-        clean,
-        with,
-        effect,
-    };
     let mut corrections = 0;
     loop {
         let (data, bench) = (&record.with.record, &record.with.bench);
@@ -138,12 +129,8 @@ impl UnlistedRecord {
         strength: f64,
     ) -> Result<Option<Self>, EvaluationError> {
         let clean = simulate(scenario)?;
-        let residuals = whitened_residuals(&clean)?;
-        if !scale(scenario, &residuals, &mut effect, strength)? {
-            return Ok(None);
-        }
-        let with = effect.simulate(scenario)?;
-        Ok(Some(Self {
+        let with = scale(scenario, &clean, &mut effect, strength)?;
+        Ok(with.map(|with| Self {
             clean,
             with,
             effect,
@@ -166,37 +153,31 @@ impl UnlistedRecord {
     }
 }
 
-/// Scales an effect to a strength given the nominal model; `false` if it cannot be reached. `without`
-/// are the whitened residuals without it.
-///
-/// # Errors
-/// Those of a simulation of the record.
+/// Scales an effect to a strength given the nominal model; the record with it, or `None` if it cannot be reached.
 fn scale(
     scenario: &Scenario,
-    without: &[[f64; 3]],
+    clean: &Simulation,
     effect: &mut UnlistedEffect,
     strength: f64,
-) -> Result<bool, EvaluationError> {
+) -> Result<Option<Simulation>, EvaluationError> {
+    let without = whitened_residuals(clean)?;
     for _ in 0..=CORRECTIONS {
         let Ok(simulation) = effect.simulate(scenario) else {
-            return Ok(false);
+            break;
         };
         let Ok(with) = whitened_residuals(&simulation) else {
-            return Ok(false);
+            break;
         };
-        let factor = strength / distance(without, &with);
-        if !(1e-4..1e4).contains(&factor) {
-            return Ok(false);
-        }
+        let factor = strength / distance(&without, &with);
         if (1.0 / REACHED..REACHED).contains(&factor) {
-            return Ok(true);
+            return Ok(Some(simulation));
         }
         effect.size *= factor;
-        if effect.size > effect.largest_size {
-            return Ok(false);
+        if !(1e-4..1e4).contains(&factor) || effect.size > effect.largest_size {
+            break;
         }
     }
-    Ok(false)
+    Ok(None)
 }
 
 /// Whitened residuals of the nominal model that is fitted to a record.
@@ -242,23 +223,21 @@ mod tests {
     #[test]
     fn every_kind_is_scaled_to_its_strength() {
         let scenario = short(3);
-        let clean = simulate(&scenario).unwrap();
-        let without = whitened_residuals(&clean).unwrap();
         let mut scaled = 0;
         for (number, kind) in UnlistedKind::ALL.into_iter().enumerate() {
             let random = &mut Draw::new(number as u64, 0);
-            let mut effect = UnlistedEffect::draw(kind, &scenario, random).unwrap();
-            if scale(&scenario, &without, &mut effect, 10.0).unwrap() {
+            let effect = UnlistedEffect::draw(kind, &scenario, random).unwrap();
+            if let Some(record) = UnlistedRecord::scaled(&scenario, effect, 10.0).unwrap() {
                 scaled += 1;
-                let other = effect.simulate(&scenario).unwrap();
-                let with = whitened_residuals(&other).unwrap();
+                let [without, with] =
+                    [&record.clean, &record.with].map(|one| whitened_residuals(one).unwrap());
                 let strength = distance(&without, &with);
                 assert!(
                     (10.0 / REACHED..10.0 * REACHED).contains(&strength),
                     "{strength}"
                 );
                 // Scaling does not change the sign.
-                assert!(effect.size > 0.0);
+                assert!(record.effect.size > 0.0);
             }
         }
         // A term whose force never changes its sign in a day is a constant, and cannot be scaled.

@@ -54,31 +54,30 @@ impl PopulationCell {
     /// Name on the command line and in files.
     #[must_use]
     pub fn name(self) -> String {
-        match self {
-            Self::Clean => "clean".to_owned(),
-            Self::Single(strength) => format!("d{strength}"),
-            Self::LogUniform => "d5-50".to_owned(),
-            Self::Pair => "pair".to_owned(),
-            Self::OutOfCatalogue => "beyond".to_owned(),
-            Self::Step => "step".to_owned(),
-            Self::Cubic => "cubic".to_owned(),
-            Self::Azimuth => "azimuth".to_owned(),
-        }
+        let [name, _] = self.words();
+        name
     }
 
     /// Description of its records, as a heading.
     #[must_use]
     pub fn title(self) -> String {
-        match self {
-            Self::Clean => "clean records".to_owned(),
-            Self::Single(strength) => format!("d = {strength}"),
-            Self::LogUniform => "d = 5 to 50".to_owned(),
-            Self::Pair => "two effects, d = 8 each".to_owned(),
-            Self::OutOfCatalogue => "beyond the catalogue, d = 10".to_owned(),
-            Self::Step => "a step, d = 8".to_owned(),
-            Self::Cubic => "a cubic term, d = 3".to_owned(),
-            Self::Azimuth => "azimuth wrong by 0.1 deg".to_owned(),
-        }
+        let [_, title] = self.words();
+        title
+    }
+
+    /// Name and title.
+    fn words(self) -> [String; 2] {
+        let words = match self {
+            Self::Clean => ["clean", "clean records"],
+            Self::Single(d) => return [format!("d{d}"), format!("d = {d}")],
+            Self::LogUniform => ["d5-50", "d = 5 to 50"],
+            Self::Pair => ["pair", "two effects, d = 8 each"],
+            Self::OutOfCatalogue => ["beyond", "beyond the catalogue, d = 10"],
+            Self::Step => ["step", "a step, d = 8"],
+            Self::Cubic => ["cubic", "a cubic term, d = 3"],
+            Self::Azimuth => ["azimuth", "azimuth wrong by 0.1 deg"],
+        };
+        words.map(str::to_owned)
     }
 
     /// The cell of a name.

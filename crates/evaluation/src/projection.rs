@@ -170,14 +170,6 @@ impl ProjectedScores {
         })
     }
 
-    /// Scores of the sizes of an effect, in the unit of its table.
-    #[must_use]
-    pub fn scores(&self, of: &Signature) -> DVector<f64> {
-        DVector::from_fn(of.columns.len(), |i, _| {
-            of.scale * self.score[of.columns[i]]
-        })
-    }
-
     /// Cosine of the angle between the signature of an effect of known sizes and the span of the
     /// columns of another. 0 if the other is not observable.
     #[must_use]

@@ -11,12 +11,13 @@ use crate::extended_platform::ExtendedPlatform;
 
 /// Numbers of states.
 pub const SIZES: [usize; 6] = [12, 14, 18, 24, 36, 60];
-const STEP_S: f64 = 60.0;
+/// Interval between samples, s.
+pub const STEP_S: f64 = 60.0;
+/// Spectral density of 0.002 deg/h held over 60 s, (deg/h)² s.
+pub const DENSITY: [f64; 3] = [2.4e-4; 3];
+/// Variance of one sample of 1e-5 g.
+pub const VARIANCE: [f64; 3] = [1e-10; 3];
 const LATITUDE_DEG: f64 = 39.1;
-/// (0.002 deg/h)² held over 60 s.
-const DENSITY: [f64; 3] = [2.4e-4; 3];
-/// (1e-5 g)².
-const VARIANCE: [f64; 3] = [1e-10; 3];
 
 /// The filter on [`ExtendedPlatform`].
 pub type ExtendedFilter = Filter<f64, ExtendedPlatform, Chart<f64>, VecStorage<f64>, 3, 3>;

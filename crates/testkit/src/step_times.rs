@@ -10,18 +10,12 @@ use gyrocal::{
 };
 use nalgebra::{SMatrix, SVector};
 
-use crate::extended_filter::samples;
+use crate::extended_filter::{DENSITY, STEP_S, VARIANCE, samples};
 use crate::peer_filters::{Adskalman, Multicalc};
 use crate::timing::{medians, seconds, well_placed};
 
 /// Steps of one round: ten hours.
 const STEPS: usize = 600;
-/// Interval between samples, s.
-const STEP_S: f64 = 60.0;
-/// Spectral density of 0.002 deg/h held over 60 s, (deg/h)² s.
-const DENSITY: [f64; 3] = [2.4e-4; 3];
-/// Variance of one sample of 1e-5 g.
-const VARIANCE: [f64; 3] = [1e-10; 3];
 
 /// Median times of a step by one rule of integration: of the structured filter, of the textbook
 /// filter, and of the structured filter on the factors.

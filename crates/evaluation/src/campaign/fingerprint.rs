@@ -1,5 +1,7 @@
 //! Identity of a campaign: results are only reused by the campaign that made them.
 
+use std::hash::{DefaultHasher, Hash as _, Hasher as _};
+
 use serde::{Deserialize, Serialize};
 
 /// Everything but the seeds that results depend on: only a campaign with an equal fingerprint may
@@ -23,12 +25,6 @@ impl Fingerprint {
         self
     }
 
-    /// Names and values, in the order in which they were added.
-    #[must_use]
-    pub fn entries(&self) -> &[(String, String)] {
-        &self.0
-    }
-
     /// First difference to the fingerprint in a file, in words; `None` if they are equal.
     pub(crate) fn difference(&self, found: &Self) -> Option<String> {
         for (index, (name, expected)) in self.0.iter().enumerate() {
@@ -47,6 +43,18 @@ impl Fingerprint {
         let (name, _) = found.0.get(self.0.len())?;
         Some(format!("with a {name}, expected none"))
     }
+}
+
+/// A hash of the running program, to distinguish results of different builds where they depend on
+/// all of the code. `unknown` if the program cannot read itself.
+#[must_use]
+pub fn program() -> String {
+    let Ok(bytes) = std::env::current_exe().and_then(std::fs::read) else {
+        return "unknown".to_owned();
+    };
+    let mut hasher = DefaultHasher::new();
+    bytes.hash(&mut hasher);
+    format!("{:016x}", hasher.finish())
 }
 
 fn quoted(value: &str) -> String {
@@ -90,5 +98,12 @@ mod tests {
             said(&other).as_deref(),
             Some("with a options, expected a scenario")
         );
+    }
+
+    #[test]
+    fn a_program_is_itself() {
+        assert_eq!(program(), program());
+        // Sixteen hexadecimal digits: it could be read.
+        assert_eq!(program().len(), 16);
     }
 }

@@ -42,16 +42,10 @@ impl Store {
         path: &Path,
         fingerprint: &Fingerprint,
     ) -> Result<(Self, BTreeMap<u64, Finished<T>>), EvaluationError> {
-        let unusable = |reason| EvaluationError::File {
-            path: path.to_owned(),
-            reason,
-        };
-        let mut file = File::options()
-            .read(true)
-            .append(true)
-            .create(true)
-            .open(path)
-            .map_err(unusable)?;
+        let unusable = unusable(path);
+        let mut options = File::options();
+        let options = options.read(true).append(true).create(true);
+        let mut file = options.open(path).map_err(&unusable)?;
         file.try_lock().map_err(|error| match error {
             TryLockError::WouldBlock => EvaluationError::Busy {
                 path: path.to_owned(),
@@ -59,8 +53,8 @@ impl Store {
             TryLockError::Error(reason) => unusable(reason),
         })?;
         let mut content = Vec::new();
-        file.seek(SeekFrom::Start(0)).map_err(unusable)?;
-        file.read_to_end(&mut content).map_err(unusable)?;
+        file.seek(SeekFrom::Start(0)).map_err(&unusable)?;
+        file.read_to_end(&mut content).map_err(&unusable)?;
 
         let header = header_line(fingerprint).map_err(|error| unusable(error.into()))?;
         let whole = content
@@ -74,12 +68,12 @@ impl Store {
                     path: path.to_owned(),
                 });
             }
-            file.set_len(0).map_err(unusable)?;
-            file.write_all(&header).map_err(unusable)?;
+            file.set_len(0).map_err(&unusable)?;
+            file.write_all(&header).map_err(&unusable)?;
         }
         let known = parse(path, &content[..whole], fingerprint)?;
         if whole > 0 && whole < content.len() {
-            file.set_len(whole as u64).map_err(unusable)?;
+            file.set_len(whole as u64).map_err(&unusable)?;
         }
         let path = path.to_owned();
         Ok((Self { path, file }, known))
@@ -88,22 +82,21 @@ impl Store {
     /// Appends a line made by [`encode`] in one system call: a kill leaves the line whole or torn,
     /// and everything before it unchanged.
     pub(crate) fn append(&mut self, line: &[u8]) -> Result<(), EvaluationError> {
-        self.file
-            .write_all(line)
-            .map_err(|reason| EvaluationError::File {
-                path: self.path.clone(),
-                reason,
-            })
+        self.file.write_all(line).map_err(unusable(&self.path))
     }
 
     /// Flushes the file to disk.
     pub(crate) fn finish(self) -> Result<(), EvaluationError> {
-        self.file
-            .sync_all()
-            .map_err(|reason| EvaluationError::File {
-                path: self.path,
-                reason,
-            })
+        self.file.sync_all().map_err(unusable(&self.path))
+    }
+}
+
+/// The error of a file that the results cannot be kept in.
+fn unusable(path: &Path) -> impl Fn(std::io::Error) -> EvaluationError {
+    let path = path.to_owned();
+    move |reason| EvaluationError::File {
+        path: path.clone(),
+        reason,
     }
 }
 

@@ -150,7 +150,8 @@ fn sets(seed: u64) -> Result<Sets, Error> {
         sets.now = now.filter(|size| *size > 1.0);
         let best = planned.proposals.first().ok_or("no proposal")?;
         let predicted = best.outlook.sets.first().ok_or("no set")?.mean_size;
-        let (one, second, calibration) = (run_of(&first), made(&scenario, best)?, Options::default());
+        let (one, second, calibration) =
+            (run_of(&first), made(&scenario, best)?, Options::default());
         let compared = compare(fitted, &one, &run_of(&second), None, &named, &calibration)?;
         let left = compared.sets.first().ok_or("no set")?;
         let left = left.iter().filter(|member| member.stays).count();

@@ -209,12 +209,17 @@ fn hidden(seed: u64, records: u64, strength: f64) -> Result<Named, Error> {
     let together = diagnose_together(checked(&simulations, &options), &options, |_| ())?.result;
     let set = together.causes().find(|cause| set_holds(cause, effect.id));
     let members = || set.into_iter().flat_map(Finding::set);
-    let shapes = members().filter(|id| effect_of(id).is_some_and(|member| member.shape().is_some()));
+    let shapes =
+        members().filter(|id| effect_of(id).is_some_and(|member| member.shape().is_some()));
     let first = diagnose(&simulations[0].record, &simulations[0].bench, &options)?;
     Ok(Named {
         together: set.is_some(),
         set: members().count(),
-        alone: first.result.causes().next().map(|cause| cause.set().count()),
+        alone: first
+            .result
+            .causes()
+            .next()
+            .map(|cause| cause.set().count()),
         in_time: effect.kind != EffectKind::Constant,
         shapes: shapes.count(),
         oracle: oracle::set_size(&scenarios[0], &simulations, &injected)?,
