@@ -12,8 +12,6 @@
 //! - A [`CalibrationTrial`] simulates a scenario, calibrates the record and compares estimate and
 //!   truth; a [`CalibrationSummary`] has bias, RMSE, NEES, NIS and coverage over all trials. It is
 //!   the job of `gyrocal monte-carlo`.
-//! - A [`BudgetTrial`] draws platform, site and bench, calibrates a record and holds the errors against
-//!   the uncertainty budget; a [`SpreadTrial`] does so with the scatter over several records.
 //! - [`PopulationCell::evaluate`] draws a record with injected effects, diagnoses it, applies
 //!   [`BaselineMethod`]s to it, and compares the results with the truth in a [`RecordScore`].
 //!   [`cell_report`] has the operating characteristics of a cell: [`Characteristic`]s with their
@@ -73,7 +71,6 @@
 //! Noise in its populations is as declared: effects of noise are not injected.
 
 mod baseline;
-mod budget_trial;
 mod calibration_summary;
 mod calibration_trial;
 mod campaign;
@@ -99,7 +96,6 @@ mod signature;
 mod statistic;
 
 pub use baseline::{BaselineMethod, BaselineResult};
-pub use budget_trial::{BudgetTrial, SpreadTrial, TrueCoefficients};
 pub use calibration_summary::{
     BandedMean, CalibrationSummary, CoefficientSummary, MeasuredValue, MonteCarloReport,
 };

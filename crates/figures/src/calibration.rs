@@ -2,6 +2,7 @@
 
 mod attitudes;
 pub(crate) mod budget;
+mod budget_trial;
 mod cost;
 
 use gyrocal_calibration::Options;

@@ -125,15 +125,6 @@ impl Figure {
         }
     }
 
-    /// The same figure, judged by its runs, which may be too few to tell.
-    pub(crate) fn judged(self, judgement: Judgement) -> Self {
-        Self {
-            holds: judgement.holds(),
-            too_few: judgement == Judgement::TooFew,
-            ..self
-        }
-    }
-
     /// A time, or a ratio of times: on a machine that does other work as well, as that of a small version may, it says
     /// little, and is shown and not judged.
     pub(crate) fn timed(self, small: bool) -> Self {
@@ -150,17 +141,6 @@ impl Figure {
             ..self
         }
     }
-}
-
-/// Judgement of the coverage of 95 % intervals by few records: it is missed if the exact 99.9 % interval
-/// of the share does not contain 95 %, and met if the 90 % interval lies within a band.
-pub(crate) fn coverage(covered: Proportion, band: [f64; 2]) -> Judgement {
-    let [low, high] = covered.interval(0.999);
-    let [least, most] = covered.interval(0.9);
-    Judgement::of(
-        band[0] <= least && most <= band[1],
-        !(low..=high).contains(&0.95),
-    )
 }
 
 /// The figures as a table, with the commit that they are measured at, and the reasons of targets where there are any.
@@ -214,21 +194,12 @@ mod tests {
     #[test]
     fn too_few_runs_are_said_to_be_too_few() {
         let of = |hits, trials| {
-            let share = Proportion { hits, trials };
-            let figure = Figure::within("detected", [0.99, f64::INFINITY], share.share());
-            table_of(&[figure.judged(share.at_least(0.99))])
+            let share = Statistic::Share(Proportion { hits, trials });
+            let target = Some(Target::AtLeast(0.99));
+            table_of(&[Figure::of_statistic("detected", &share, target, false)])
         };
         assert!(of(45, 45).contains("| too few records to tell |"));
         assert!(of(20, 45).contains("| NO "));
         assert!(of(1000, 1000).contains("| yes "));
-    }
-
-    #[test]
-    fn a_coverage_is_missed_where_95_percent_is_excluded() {
-        let of = |hits, trials| coverage(Proportion { hits, trials }, [0.93, 0.97]);
-        assert_eq!(of(38, 40), Judgement::TooFew);
-        assert_eq!(of(950, 1000), Judgement::Met);
-        assert_eq!(of(28, 40), Judgement::Missed);
-        assert_eq!(of(1000, 1000), Judgement::Missed);
     }
 }

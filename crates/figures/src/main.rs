@@ -27,7 +27,6 @@ mod paper;
 mod plant_peers;
 mod records;
 mod report;
-mod resumable;
 mod topics;
 mod truth;
 mod values;

@@ -7,7 +7,6 @@ use crate::harness::sources::{
     CALIBRATION, COMMAND, DIAGNOSIS, FILTER, INSTRUMENTS, PLANTS, Sources, of,
 };
 use crate::harness::topic::{Part, Topic};
-use crate::truth::Extent;
 use crate::{
     any_plant, before, calibration, catalogue, comparison, diagnosis_ground, embedded, field,
     fleet, gain, generator, house, kernel, logs, measured, naming, paper, plant_peers, records,

@@ -1,9 +1,9 @@
 //! The uncertainty budget against simulated and calibrated runs.
 
-use gyrocal_evaluation::{BudgetTrial, SpreadTrial, TrueCoefficients};
 use gyrocal_truth::Coefficients;
 
 use super::names;
+use super::budget_trial::{BudgetTrial, SpreadTrial, TrueCoefficients};
 use crate::error::Error;
 use crate::figure::Figure;
 use crate::harness::sources::{CALIBRATION, Sources, of};

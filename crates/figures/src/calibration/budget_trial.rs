@@ -4,13 +4,13 @@
 use gyrocal_calibration::{
     Options, UncertaintyBudget, UncertaintySource, calibrate_with_budget, spread,
 };
+use gyrocal_evaluation::run_of;
 use gyrocal_record::{Prior, SiteUncertainty};
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{Coefficients, Hidden, InitialAttitude, Scenario, Simulation, simulate};
 use serde::{Deserialize, Serialize};
 
-use crate::error::EvaluationError;
-use crate::injection::run_of;
+use crate::error::Error;
 
 /// Purposes of the streams of a seed.
 const BENCH: u64 = 0;
@@ -38,8 +38,7 @@ const INTERVAL_S: f64 = 300.0;
 
 /// Where the true coefficients come from.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub enum TrueCoefficients {
+pub(crate) enum TrueCoefficients {
     /// The prior that the bench declares.
     FromPrior,
     /// The same in every trial.
@@ -49,25 +48,22 @@ pub enum TrueCoefficients {
 /// Errors of one calibration and what its budget says of them. Arrays are in the order of
 /// [`Coefficients::named`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct BudgetTrial {
+pub(crate) struct BudgetTrial {
     /// Estimate minus truth.
-    pub error: [f64; 9],
+    pub(crate) error: [f64; 9],
     /// Combined standard uncertainties.
-    pub combined: [f64; 9],
+    pub(crate) combined: [f64; 9],
     /// Expanded uncertainties.
-    pub expanded: [f64; 9],
+    pub(crate) expanded: [f64; 9],
     /// Mean square of the error for these true coefficients: the contributions without the prior, and
     /// the distance from its mean times the sensitivity to it.
-    pub of_this_truth: [f64; 9],
+    pub(crate) of_this_truth: [f64; 9],
 }
 
 impl BudgetTrial {
     /// Draws bench, site, attitude, noise and, by `from`, coefficients from a seed; simulates, calibrates,
     /// compares.
-    ///
-    /// # Errors
-    /// [`EvaluationError::Simulation`] and [`EvaluationError::Calibration`].
-    pub fn of(seed: u64, from: TrueCoefficients) -> Result<Self, EvaluationError> {
+    pub(crate) fn of(seed: u64, from: TrueCoefficients) -> Result<Self, Error> {
         let platform = DrawnPlatform::new(seed, from);
         let (simulation, budget) = platform.calibrated(platform.scenario(seed))?;
         let truth = simulation.truth.coefficients.named();
@@ -93,18 +89,15 @@ impl BudgetTrial {
 /// Several calibrations of one platform, each with another attitude and other noise, and whether their
 /// scatter is said to be larger than the uncertainties.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct SpreadTrial {
+pub(crate) struct SpreadTrial {
     /// Of any coefficient.
-    pub is_larger: bool,
+    pub(crate) is_larger: bool,
 }
 
 impl SpreadTrial {
     /// Draws a platform from a seed and calibrates it in `runs` turn-ons. Constant drifts differ between
     /// them by `turn_on_deg_per_h`, which the bench does not declare.
-    ///
-    /// # Errors
-    /// As [`BudgetTrial::of`].
-    pub fn of(seed: u64, runs: u64, turn_on_deg_per_h: f64) -> Result<Self, EvaluationError> {
+    pub(crate) fn of(seed: u64, runs: u64, turn_on_deg_per_h: f64) -> Result<Self, Error> {
         let platform = DrawnPlatform::new(seed, TrueCoefficients::FromPrior);
         let mut draw = Draw::new(seed, TRUTH + 1);
         let mut budgets = Vec::new();
@@ -190,10 +183,7 @@ impl DrawnPlatform {
         }
     }
 
-    fn calibrated(
-        &self,
-        mut scenario: Scenario,
-    ) -> Result<(Simulation, UncertaintyBudget), EvaluationError> {
+    fn calibrated(&self, mut scenario: Scenario) -> Result<(Simulation, UncertaintyBudget), Error> {
         for (id, size) in self.site {
             scenario.hidden.push(Hidden::new(id, &[("size", size)])?);
         }
