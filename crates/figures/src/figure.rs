@@ -117,14 +117,6 @@ impl Figure {
         }
     }
 
-    /// The same figure with the share that it states.
-    pub(crate) fn of_share(self, share: Proportion) -> Self {
-        Self {
-            share: Some(share),
-            ..self
-        }
-    }
-
     /// A time, or a ratio of times: on a machine that does other work as well, as that of a small version may, it says
     /// little, and is shown and not judged.
     pub(crate) fn timed(self, small: bool) -> Self {

@@ -2,8 +2,8 @@
 
 use gyrocal_truth::Coefficients;
 
-use super::names;
 use super::budget_trial::{BudgetTrial, SpreadTrial, TrueCoefficients};
+use super::names;
 use crate::error::Error;
 use crate::figure::Figure;
 use crate::harness::sources::{CALIBRATION, Sources, of};
