@@ -4,7 +4,7 @@
 //! (`results`), and what may change at which step (`moves.toml`).
 
 mod compare;
-mod moves;
+pub(crate) mod moves;
 mod records;
 mod results;
 #[cfg(test)]

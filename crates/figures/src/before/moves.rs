@@ -62,8 +62,8 @@ pub(super) fn empty(folder: &Path) -> Result<(), Error> {
     Ok(gyrocal_record::write_whole(&path, text.as_bytes())?)
 }
 
-/// Whether a text is what a pattern says.
-fn matches(pattern: &str, text: &str) -> bool {
+/// Whether a text is what a pattern says, in which `*` stands for any letters.
+pub(crate) fn matches(pattern: &str, text: &str) -> bool {
     let Some((head, rest)) = pattern.split_once('*') else {
         return pattern == text;
     };

@@ -48,31 +48,16 @@ fn over(figures: Vec<Figure>, records: f64, how: &str) -> Vec<Figure> {
 }
 
 fn many(found: &Measured) -> Vec<Figure> {
-    let most = |name, limit, measured, unit| Figure::at_most(name, limit, measured, unit);
+    let ratio = "two workers: records a second over the library in one process with one thread";
+    let overhead =
+        "one worker over the library, partitions of a second: overhead of the engine a record";
+    let growth = "memory of a worker, second half of the records over the first";
+    let largest = "memory of a worker, most";
     vec![
-        Figure::within(
-            "two workers: records a second over the library in one process with one thread",
-            [1.6, f64::INFINITY],
-            found.of("ratio"),
-        ),
-        most(
-            "one worker over the library, partitions of a second: overhead of the engine a record",
-            5.0,
-            100.0 * found.of("overhead"),
-            "%",
-        ),
-        most(
-            "memory of a worker, most",
-            1000.0,
-            found.of("worker_mb"),
-            "MB",
-        ),
-        most(
-            "memory of a worker, second half of the records over the first",
-            GROWTH_MB,
-            found.of("growth_mb"),
-            "MB",
-        ),
+        Figure::within(ratio, [1.6, f64::INFINITY], found.of("ratio")),
+        Figure::at_most(overhead, 5.0, 100.0 * found.of("overhead"), "%"),
+        Figure::at_most(largest, 1000.0, found.of("worker_mb"), "MB"),
+        Figure::at_most(growth, GROWTH_MB, found.of("growth_mb"), "MB"),
         Figure::note(
             "these records: rows of each, records of a partition, cost by the library",
             format!(
@@ -88,28 +73,18 @@ fn many(found: &Measured) -> Vec<Figure> {
 fn killed(found: &Measured) -> Vec<Figure> {
     let [runs, kills, lost, repeated] =
         ["runs", "kills", "lost", "repeated"].map(|key| found.of(key));
-    let lost_or_repeated = Figure {
-        measured: format!("{lost} and {repeated} after {kills} kills"),
-        ..Figure::within(
-            "workers killed with SIGKILL: records lost, and repeated after it",
-            [0.0, 0.0],
-            lost + repeated,
-        )
+    let equal = "1, 2, 4 workers, three partitionings, killed workers: equal bits";
+    let mut equal = Figure::truth(equal, found.is("equal"));
+    equal.measured += &format!(", {runs} runs");
+    let name = "workers killed with SIGKILL: records lost, and repeated after it";
+    let lost_or_repeated = Figure::at_most(name, 0.0, lost + repeated, "");
+    let killed = Figure {
+        measured: format!("{lost} and {repeated}, {kills} kills"),
+        holds: lost_or_repeated.holds.filter(|_| kills >= KILLS),
+        too_few: kills < KILLS,
+        ..lost_or_repeated
     };
-    vec![
-        Figure {
-            measured: format!("{} in {runs} runs", found.is("equal")),
-            ..Figure::truth(
-                "1, 2, 4 workers, three partitionings, killed workers: equal bits",
-                found.is("equal"),
-            )
-        },
-        Figure {
-            holds: lost_or_repeated.holds.filter(|_| kills >= KILLS),
-            too_few: kills < KILLS,
-            ..lost_or_repeated
-        },
-    ]
+    vec![equal, killed]
 }
 
 /// Costs of a record, and what follows from them for a million.

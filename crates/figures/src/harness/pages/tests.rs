@@ -1,6 +1,7 @@
 use gyrocal_evaluation::Statistic;
 
 use super::*;
+use crate::before::moves::matches;
 use crate::figure::table_of;
 
 fn share(name: &str, hits: u64, trials: u64) -> Figure {
@@ -181,20 +182,4 @@ fn no_row_of_an_earlier_commit_is_lost() {
         let is_there = names.iter().any(|now| now.ends_with(&format!(": {name}")));
         assert!(is_listed || is_there, "lost: {was}");
     }
-}
-
-/// Whether a text is a pattern, in which a `*` stands for any text.
-fn matches(pattern: &str, text: &str) -> bool {
-    let mut parts = pattern.split('*');
-    let Some(mut rest) = parts.next().and_then(|first| text.strip_prefix(first)) else {
-        return false;
-    };
-    let parts: Vec<&str> = parts.collect();
-    for part in &parts {
-        match rest.find(part) {
-            Some(place) => rest = &rest[place + part.len()..],
-            None => return false,
-        }
-    }
-    rest.is_empty() || pattern.ends_with('*')
 }
