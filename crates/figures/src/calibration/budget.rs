@@ -26,7 +26,7 @@ pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
     let drawn = "coefficients from the prior";
     let fixed = "the same coefficients in every run";
     let trials = |name, first, from| {
-        let job = move |seed| Ok(BudgetTrial::of(seed, from)?);
+        let job = move |seed| BudgetTrial::of(seed, from);
         Population::new(name, [first, 5000, 40], SOURCES, job)
     };
     let from = TrueCoefficients::FromPrior;
@@ -41,7 +41,7 @@ pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
             TURN_ON_DEG_PER_H,
         ),
     ] {
-        let job = move |seed| Ok(SpreadTrial::of(seed, RUNS_OF_PLATFORM, turn_on)?);
+        let job = move |seed| SpreadTrial::of(seed, RUNS_OF_PLATFORM, turn_on);
         let what = format!("{name}: share with a scatter larger than the uncertainties");
         let row = Row::share(what, |trial: &SpreadTrial| Some(trial.is_larger));
         let row = match turn_on > 0.0 {
