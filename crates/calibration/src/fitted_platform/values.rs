@@ -79,7 +79,7 @@ impl FittedPlatform<'_> {
         self.problem.runs.first()?.rows.temperature_scale()
     }
 
-    /// All parameters of [`Catalogue`]: those that are not estimated are zero. Of several records those of
+    /// All parameters of the extended model: those that are not estimated are zero. Of several records those of
     /// the first.
     #[must_use]
     pub fn parameters(&self) -> Vec<f64> {
