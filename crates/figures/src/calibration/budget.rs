@@ -2,14 +2,14 @@
 
 use gyrocal_truth::Coefficients;
 
-use super::budget_trial::{BudgetTrial, SpreadTrial, TrueCoefficients};
+use super::budget_trial::{self, BudgetTrial, SpreadTrial, TrueCoefficients};
 use super::names;
 use crate::error::Error;
 use crate::figure::Figure;
 use crate::harness::sources::{CALIBRATION, Sources, of};
 use crate::harness::{COVERAGE, COVERAGE_REASON, Context, Population, Row};
 
-const SOURCES: Sources = of(CALIBRATION, &[file!()]);
+const SOURCES: Sources = of(CALIBRATION, &[file!(), budget_trial::FILE]);
 
 /// Runs of each platform whose scatter is looked at.
 const RUNS_OF_PLATFORM: u64 = 4;

@@ -12,6 +12,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
 
+/// This file, as a source of populations.
+pub(super) const FILE: &str = file!();
+
 /// Purposes of the streams of a seed.
 const BENCH: u64 = 0;
 const TRUTH: u64 = 1;
