@@ -79,18 +79,15 @@ fn years(
 impl Year {
     fn of(lane: &Lane) -> Self {
         let (alarm, _) = lane.alarms();
-        let row = alarm.map(|alarm| alarm.row);
-        let set = alarm.map_or(&[][..], |alarm| &alarm.set);
-        let effects = set
-            .iter()
-            .filter_map(|index| EFFECTS_BY_DEFAULT.get(*index));
-        let after_outlier = lane.outlier.zip(row).map(|(outlier, row)| row - outlier);
+        let is_walk = |index: &usize| {
+            let effect = EFFECTS_BY_DEFAULT.get(*index);
+            effect.is_some_and(|effect| effect.walking_gyro().is_some())
+        };
+        let after = alarm.zip(lane.outlier);
         Self {
-            days: row.map(|row| row as f64 / DAY as f64),
-            walks: effects
-                .clone()
-                .any(|effect| effect.walking_gyro().is_some()),
-            turned: after_outlier.is_some_and(|steps| steps <= JUMP_LIFE),
+            days: alarm.map(|alarm| alarm.row as f64 / DAY as f64),
+            walks: alarm.is_some_and(|alarm| alarm.set.iter().any(is_walk)),
+            turned: after.is_some_and(|(alarm, outlier)| alarm.row - outlier <= JUMP_LIFE),
         }
     }
 }
