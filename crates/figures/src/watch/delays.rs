@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use super::lane::{Effect, Lane};
 use super::noise::Noise;
 use super::platform::{Platform, information};
-use super::{DAY, lanes, platforms};
+use super::{DAY, LANES, lanes, platforms};
 use crate::error::Error;
 use crate::figure::Figure;
 use crate::harness::{Context, Records, Row};
@@ -75,7 +75,7 @@ pub(super) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
             for (size, small) in SIZES {
                 let name = format!("{kind} of {size} sigma a day, walk {walk:.0e}");
                 let trial = Trial {
-                    cell: cells.len() as u64,
+                    cell: cells.len(),
                     walk,
                     effect,
                     index: index(id),
@@ -128,7 +128,7 @@ fn onset(number: u64) -> usize {
 #[derive(Clone, Copy, Debug)]
 struct Trial {
     /// Its number; noise is drawn anew for each.
-    cell: u64,
+    cell: usize,
     walk: f64,
     effect: Effect,
     index: usize,
@@ -144,8 +144,8 @@ impl Trial {
         let (platform, onset) = ([DELAYS, number], onset(number));
         let unit = information(platform, self.effect, onset, self.walk)?;
         let lane = |stream| {
-            let noise = [DELAYS + self.cell, number];
-            Lane::noisy(noise, stream, Noise::Declared, self.walk)
+            let stream = LANES * self.cell + stream;
+            Lane::noisy(platform, stream, Noise::Declared, self.walk)
                 .with(self.effect, self.size / unit.sqrt(), onset)
                 .beside(self.index)
         };

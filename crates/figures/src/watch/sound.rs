@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::lane::Lane;
 use super::noise::Noise;
 use super::platform::Platform;
-use super::{DAY, lanes, platforms};
+use super::{DAY, LANES, lanes, platforms};
 use crate::error::Error;
 use crate::figure::Figure;
 use crate::harness::{Context, Population, Row};
@@ -56,10 +56,11 @@ struct Year {
     turned: bool,
 }
 
-/// Platforms of a population over a year; filter and watch expect the walk that is declared.
+/// Platforms of a population over a year; filter and watch expect the walk that is declared. Each cell of a
+/// population, by its place, has noise of its own.
 fn years(
     context: &Context,
-    cell: &str,
+    (cell, place): (&str, usize),
     [population, small]: [u64; 2],
     noise: Noise,
     [declared, walk]: [f64; 2],
@@ -69,7 +70,7 @@ fn years(
     let steps = (years * YEAR_DAYS * DAY as f64) as usize;
     platforms(cell, [60, small], move |number| {
         let platform = [population, number];
-        let of = |stream| Lane::noisy(platform, stream, noise, walk);
+        let of = |lane| Lane::noisy(platform, LANES * place + lane, noise, walk);
         let mut all: Vec<Lane> = (0..lanes).map(of).collect();
         Platform::new(platform, steps, declared)?.run(&mut all)?;
         Ok(all.iter().map(Year::of).collect())
@@ -97,9 +98,9 @@ type Years = Vec<Year>;
 pub(super) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
     let alarms = |all: &[Years]| Proportion::of(all.iter().flatten().map(|one| one.days.is_some()));
     let mut figures = Vec::new();
-    for (walk, noise, words, limit, reason) in CLEAN {
+    for (place, (walk, noise, words, limit, reason)) in CLEAN.into_iter().enumerate() {
         let cell = format!("sound {walk:e} {words}");
-        let population = years(context, &cell, [SOUND, 2], noise, [walk; 2]);
+        let population = years(context, (&cell, place), [SOUND, 2], noise, [walk; 2]);
         let name = format!(
             "alarms in a clean platform-year at 1 % a year, walk {walk:.0e}, noise {words}"
         );
@@ -109,7 +110,13 @@ pub(super) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
     // Outliers of gyros turn the platform: alarms are true.
     let words = "Student t, 4 degrees, of all sensors";
     let cell = format!("sound 1e-5 {words}");
-    let population = years(context, &cell, [SOUND, 0], Noise::Student4Both, [1e-5; 2]);
+    let population = years(
+        context,
+        (&cell, CLEAN.len()),
+        [SOUND, 0],
+        Noise::Student4Both,
+        [1e-5; 2],
+    );
     let turned = |all: &Years| {
         let alarmed = all.iter().filter(|one| one.days.is_some());
         alarmed.map(|one| one.turned).collect::<Vec<_>>()
@@ -125,11 +132,11 @@ pub(super) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
         .at_least(0.9, "outliers of 20 to 30 sigma turn it too, and some by chance go together"),
     ];
     figures.extend(context.measure(&population, &rows)?);
-    for [declared, walk] in UNDECLARED {
+    for (place, [declared, walk]) in UNDECLARED.into_iter().enumerate() {
         let cell = format!("undeclared {declared:e} {walk:e}");
         let population = years(
             context,
-            &cell,
+            (&cell, place),
             [WALKS, 0],
             Noise::Declared,
             [declared, walk],
