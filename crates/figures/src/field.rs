@@ -14,7 +14,7 @@ use crate::harness::{Context, Population, Row};
 /// Records of a row.
 const RECORDS: u64 = 20;
 
-/// Rows of the small version, with one record each: those whose right answers are told already.
+/// Rows of the small version, with one record each: quick ones.
 const SMALL: [&str; 6] = [
     "site.latitude_deg +- 20",
     "noise.accel_g x 2",

@@ -8,7 +8,6 @@
 //! - `contracts`: results of all commands against their published schemas.
 //! - `calibration`: dense least squares for short records.
 //! - `noise`: innovations of records with faulty noise.
-//! - `instruments`: a test set of formats and dialects of records.
 //! - `extended`: the controller of `examples/extended` against the catalogue.
 //!
 //! Each module has more than one user among tests, benches and `cargo figures`; support of a single test
@@ -30,8 +29,6 @@ pub mod contracts;
 mod copy;
 #[cfg(feature = "calibration")]
 pub mod dense_least_squares;
-#[cfg(feature = "instruments")]
-pub mod dialects;
 #[cfg(feature = "extended")]
 pub mod extended_comparison;
 #[cfg(feature = "filters")]

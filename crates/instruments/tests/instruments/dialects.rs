@@ -2,7 +2,8 @@
 
 use gyrocal_instruments::{Description, InstrumentError, average_file, read_any, read_record};
 use gyrocal_record::Record;
-use gyrocal_testkit::dialects::check_dialects;
+
+use crate::dialect_set::check_dialects;
 
 fn words(error: impl Into<InstrumentError>) -> String {
     let error = error.into();

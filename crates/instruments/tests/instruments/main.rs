@@ -2,6 +2,7 @@
 #![cfg(test)]
 
 mod common;
+mod dialect_set;
 mod dialects;
 mod few_positions;
 mod gyro_axes;

@@ -3,25 +3,23 @@
 use std::path::Path;
 
 use gyrocal_record::{Record, RecordFile};
+use gyrocal_testkit::workspace;
 use serde_json::Value;
 
-use crate::workspace;
-
 /// Outcome of one file of the set.
-#[derive(Debug)]
-pub struct DialectOutcome {
+pub(crate) struct DialectOutcome {
     /// The file.
-    pub file: String,
+    pub(crate) file: String,
     /// What went wrong; empty if it was read right, or refused as it has to be.
-    pub fault: String,
-    /// Whether it was refused with its map, as its reader is not built in.
-    pub refused: bool,
+    pub(crate) fault: String,
 }
 
 /// Reads every file of the set by `read`, which gets the path of a file and the text of its map. With the
 /// map values have to be those of the record; without the line that a case names, the error has to name that
 /// line. A file that a reader is not built in for may be refused if the error says how to build it.
-pub fn check_dialects(read: impl Fn(&Path, &str) -> Result<Record, String>) -> Vec<DialectOutcome> {
+pub(crate) fn check_dialects(
+    read: impl Fn(&Path, &str) -> Result<Record, String>,
+) -> Vec<DialectOutcome> {
     let folder = workspace().join("tests/data/dialects");
     let text = std::fs::read_to_string(folder.join("cases.json")).unwrap();
     let truth = RecordFile::read(&folder.join("truth.csv")).unwrap();
@@ -46,11 +44,7 @@ pub fn check_dialects(read: impl Fn(&Path, &str) -> Result<Record, String>) -> V
                 read(&path, &map.replacen(&format!("{line}\n"), "", 1)),
             );
         }
-        DialectOutcome {
-            file,
-            fault,
-            refused,
-        }
+        DialectOutcome { file, fault }
     };
     cases.iter().map(outcome).collect()
 }
