@@ -24,9 +24,6 @@ const SMALL: [&str; 6] = [
     "servo: as declared",
 ];
 
-/// Least number of rows of wrong keys.
-const LEAST_ROWS: f64 = 60.0;
-
 /// Words for the judgements, the right one first.
 const JUDGEMENTS: [(Judgement, &str); 4] = [
     (Judgement::Right, "right"),
@@ -38,13 +35,7 @@ const JUDGEMENTS: [(Judgement, &str); 4] = [
 /// All figures of the part `field` of the diagnosis.
 pub(crate) fn of_records(context: &Context) -> Result<Vec<Figure>, Error> {
     let keys = FieldPopulation::wrong_keys();
-    let name = "wrong bench keys: rows";
-    let mut figures = vec![Figure::within(
-        name,
-        [LEAST_ROWS, f64::INFINITY],
-        keys.len() as f64,
-    )];
-    figures.extend(table(context, "wrong bench keys", keys)?);
+    let mut figures = table(context, "wrong bench keys", keys)?;
     figures.extend(table(
         context,
         "records of users",

@@ -92,6 +92,12 @@ pub(crate) fn compared(topic: &str, figures: &[Figure]) -> Vec<Figure> {
     }
 }
 
+/// Names of the rows on the page of a topic.
+pub(crate) fn names(topic: &str) -> Vec<String> {
+    let page = std::fs::read_to_string(path(topic)).unwrap_or_default();
+    rows(&page).into_iter().map(|row| row.name).collect()
+}
+
 fn compared_with(page: &str, renewed_by: &str, rows: &[Row], figures: &[Figure]) -> Vec<Figure> {
     let mut lacking: Vec<&str> = Vec::new();
     let mut differing = Vec::new();

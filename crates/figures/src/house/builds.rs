@@ -66,8 +66,11 @@ fn ratio(root: &Path) -> Result<Vec<Figure>, Error> {
         ..Figure::at_most(&name, LARGEST_RATIO, ratio, "")
     };
     let split = split(&scratch.path().join("HEAD/target/cargo-timings"))?;
+    let command = scratch.path().join("HEAD/target/release/gyrocal");
+    let size = std::fs::metadata(command)?.len() as f64 / 1e6;
     Ok(vec![
         figure.over(1, "this machine"),
+        Figure::note("its command", format!("{size:.1} MB")),
         Figure::note("its slowest packages, s of one processor", split),
     ])
 }
