@@ -16,7 +16,7 @@ const RECORDS: u64 = 20;
 
 /// Rows of the small version, with one record each: quick ones.
 const SMALL: [&str; 6] = [
-    "site.latitude_deg +- 20",
+    "site.latitude_deg x -1",
     "noise.accel_g x 2",
     "time_s +- 3600",
     "at 85 deg",
