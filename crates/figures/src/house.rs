@@ -12,7 +12,6 @@ use gyrocal_testkit::{snapshot, workspace};
 use crate::error::Error;
 use crate::figure::Figure;
 use crate::harness::{Context, pages};
-use crate::topics::TOPICS;
 
 /// Packages of the evidence, and their most lines in `src`.
 const EVIDENCE: [&str; 3] = ["evaluation", "figures", "testkit"];
@@ -31,7 +30,7 @@ pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
         holds: lines.holds.filter(|_| !small),
         ..lines
     }));
-    figures.extend(topics());
+    figures.extend(topics(&root)?);
     if !small {
         figures.extend(builds::figures(&root)?);
     }
@@ -72,19 +71,25 @@ fn lines(root: &Path) -> Result<[Figure; 2], Error> {
     ])
 }
 
-/// The number of topics, rows that two of them measure, and rows of wrong keys of benches.
-fn topics() -> [Figure; 3] {
-    let mut topics_of: BTreeMap<String, usize> = BTreeMap::new();
-    for topic in &TOPICS {
-        for name in pages::names(topic.name) {
-            *topics_of.entry(name).or_default() += 1;
+/// The number of pages of figures, rows that two of them have, and rows of wrong keys of benches.
+fn topics(root: &Path) -> Result<[Figure; 3], Error> {
+    let mut pages_of: BTreeMap<String, usize> = BTreeMap::new();
+    let (mut topics, folder) = (0.0, root.join("docs/figures"));
+    for page in std::fs::read_dir(folder)? {
+        let name = page?.file_name();
+        let Some(topic) = name.to_str().and_then(|name| name.strip_suffix(".md")) else {
+            continue;
+        };
+        topics += 1.0;
+        for row in pages::names(topic) {
+            *pages_of.entry(row).or_default() += 1;
         }
     }
-    let several = topics_of.values().filter(|count| **count > 1).count();
+    let several = pages_of.values().filter(|count| **count > 1).count();
     let keys = FieldPopulation::wrong_keys().len();
-    [
-        Figure::within("topics of figures", [8.0; 2], TOPICS.len() as f64),
+    Ok([
+        Figure::within("topics of figures", [8.0; 2], topics),
         Figure::at_most("rows that two topics measure", 0.0, several as f64, ""),
         Figure::within("wrong bench keys: rows", [60.0, f64::INFINITY], keys as f64),
-    ]
+    ])
 }
