@@ -14,12 +14,12 @@ struct SlowSection {
     sources: Sources,
 }
 
-/// All of them, in the order in which they are run.
+/// All of them, in the order in which they are run. A script is among the sources of its section.
 const SECTIONS: [SlowSection; 10] = [
     section(
         "documentation",
-        &["crates/cli", "crates/oracle", "crates/testkit"],
-        &[],
+        &["crates/figures", "crates/oracle", "crates/testkit"],
+        &[".ci/slow/documentation"],
     ),
     section(
         "builds",
@@ -27,10 +27,15 @@ const SECTIONS: [SlowSection; 10] = [
             "",
             "codegen/emit",
             "codegen/plant",
+            "crates/cli",
             "crates/emit",
             "crates/testkit",
         ],
-        &["docs/adding-a-term.md", "tests/derivation"],
+        &[
+            ".ci/slow/builds",
+            "docs/adding-a-term.md",
+            "tests/derivation",
+        ],
     ),
     section(
         "firmware",
@@ -41,41 +46,70 @@ const SECTIONS: [SlowSection; 10] = [
             "crates/emit",
         ],
         &[
+            ".ci/slow/firmware",
             "crates/figures/src/embedded.rs",
             "crates/figures/src/embedded",
         ],
     ),
-    section("formats", &["crates/instruments"], &["tests/data/dialects"]),
+    section(
+        "formats",
+        &["crates/instruments"],
+        &[".ci/slow/formats", "tests/data/dialects"],
+    ),
     section(
         "wheel",
-        &["crates/python"],
-        &["docs/python.md", "crates/figures/src/fleet"],
+        &["crates/python", "crates/cli"],
+        &[
+            ".ci/slow/wheel",
+            "docs/python.md",
+            "crates/figures/src/fleet.rs",
+            "crates/figures/src/fleet",
+        ],
     ),
     section(
         "packages",
-        &["codegen/emit", "examples/cart_pole"],
-        &["docs/notebook-to-rust.md"],
+        &["crates/cli", "codegen/emit", "examples/cart_pole"],
+        &[
+            ".ci/slow/packages",
+            ".ci/package",
+            ".ci/page_files",
+            "docs/notebook-to-rust.md",
+        ],
     ),
-    section("new-plant", &["crates/cli"], &["examples/duffing"]),
+    section(
+        "new-plant",
+        &["crates/cli"],
+        &[".ci/slow/new-plant", ".ci/new_plant", "examples/duffing"],
+    ),
     section(
         "manual",
         &["crates/cli"],
-        &["docs", "README.md", "crates/python/python"],
+        &[
+            ".ci/slow/manual",
+            "docs",
+            "README.md",
+            "crates/python/python",
+        ],
     ),
     section(
         "peers",
         &["", "codegen/emit", "crates/testkit"],
         &[
+            ".ci/slow/peers",
             "benches",
             "crates/figures/examples",
+            "crates/figures/src/kernel.rs",
             "crates/figures/src/kernel",
+            "crates/figures/src/generator.rs",
             "crates/figures/src/generator",
+            "tests/data/numerics",
         ],
     ),
     section(
         "browser",
-        &["crates/pages"],
+        &["crates/cli"],
         &[
+            ".ci/slow/browser",
             "crates/figures/src/report.rs",
             "crates/figures/src/report",
             "docs/first-ten-minutes.md",
@@ -182,6 +216,10 @@ mod tests {
             .unwrap()
             .map(|entry| entry.unwrap().file_name().into_string().unwrap())
             .collect();
+        for section in &SECTIONS {
+            let script = format!(".ci/slow/{}", section.name);
+            assert!(section.sources.files.contains(&&*script), "{script}");
+        }
         scripts.sort();
         let mut names: Vec<&str> = SECTIONS.iter().map(|section| section.name).collect();
         names.sort_unstable();

@@ -94,23 +94,22 @@ fn definition() -> Command {
             .iter()
             .map(|part| format!("  {}: {}", part.name, part.about));
         let parts: Vec<String> = parts.collect();
-        let command = Command::new(topic.name).about(topic.about);
-        Extent::augment_args(command.after_help(format!("Parts:\n{}", parts.join("\n"))))
+        // The arguments bring a text of their own, which is not that of the topic.
+        Extent::augment_args(Command::new(topic.name))
+            .about(topic.about)
+            .after_help(format!("Parts:\n{}", parts.join("\n")))
     });
-    let night = Command::new("night")
+    let night = Night::augment_args(Command::new("night"))
         .about("Every part at full size on report seeds, in pieces; renews the pages");
-    let check = Command::new("check")
+    let check = Check::augment_args(Command::new("check"))
         .about("The small version of the parts whose sources changed, compared with the pages");
-    let section = Command::new("section").about("Slow sections of the gate and their stamps");
+    let section = Section::augment_args(Command::new("section"))
+        .about("Slow sections of the gate and their stamps");
     Command::new("figures")
         .about("Measures and prints the figures that the documentation claims")
         .subcommand_required(true)
         .subcommands(topics)
-        .subcommands([
-            Night::augment_args(night),
-            Check::augment_args(check),
-            Section::augment_args(section),
-        ])
+        .subcommands([night, check, section])
 }
 
 fn main() -> ExitCode {

@@ -248,4 +248,12 @@ mod tests {
         assert!(!has("crates/scalar/tests/single_precision.rs"));
         assert!(!has("crates/diagnosis/src/lib.rs"));
     }
+
+    #[test]
+    fn a_named_package_has_its_tests_where_another_depends_on_it() {
+        let both = of(&["crates/scalar", "crates/watch"], &[]);
+        let files = both.all_files(&workspace()).unwrap();
+        let test = Path::new("crates/scalar/tests/single_precision.rs");
+        assert!(files.iter().any(|file| file == test));
+    }
 }

@@ -41,3 +41,21 @@ impl Stamp {
         )?)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_stamp_is_stale_until_it_is_written_and_after_a_change() {
+        let folder = tempfile::tempdir().unwrap();
+        let of = |sources: &str| Stamp {
+            path: folder.path().join("figures/part"),
+            sources: sources.to_owned(),
+        };
+        assert!(of("one").is_stale());
+        of("one").write().unwrap();
+        assert!(!of("one").is_stale());
+        assert!(of("other").is_stale());
+    }
+}
