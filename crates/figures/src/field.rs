@@ -105,3 +105,22 @@ fn counts(records: &[FieldOutcome]) -> String {
     };
     counts.join(", ") + &strength
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_of_the_small_version_are_rows() {
+        let plants = plants().unwrap();
+        let all = [
+            FieldPopulation::wrong_keys(),
+            FieldPopulation::kinds(),
+            FieldPopulation::plants(&plants[Kind::Servo as usize]),
+        ];
+        let names: Vec<String> = all.into_iter().flatten().map(|one| one.name).collect();
+        for small in SMALL {
+            assert!(names.iter().any(|name| name == small), "{small}");
+        }
+    }
+}

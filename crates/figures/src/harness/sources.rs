@@ -38,12 +38,16 @@ pub(crate) const PLANTS: &[&str] = &[
 ];
 pub(crate) const COMMAND: &[&str] = &["crates/cli"];
 
-/// What judges the small version of every part: this harness and the pages.
+/// What measures and judges the small version of every part: this harness, what parts share, and the pages.
 pub(crate) const JUDGING: Sources = of(
     &[],
     &[
+        "crates/figures/src/cost.rs",
         "crates/figures/src/figure.rs",
         "crates/figures/src/harness",
+        "crates/figures/src/harness.rs",
+        "crates/figures/src/page.rs",
+        "crates/figures/src/values.rs",
         "docs/figures",
     ],
 );

@@ -183,3 +183,19 @@ fn no_row_of_an_earlier_commit_is_lost() {
         assert!(is_listed || is_there, "lost: {was}");
     }
 }
+
+#[test]
+fn sources_of_parts_are_there() {
+    let parts = crate::topics::TOPICS.iter().flat_map(|topic| topic.parts);
+    let all = parts.map(|part| (part.name, &part.sources));
+    for (name, sources) in all.chain([("judging", &crate::harness::sources::JUDGING)]) {
+        let manifests = sources
+            .packages
+            .iter()
+            .map(|package| workspace().join(package).join("Cargo.toml"));
+        let files = sources.files.iter().map(|file| workspace().join(file));
+        for path in manifests.chain(files) {
+            assert!(path.exists(), "{name}: {}", path.display());
+        }
+    }
+}
