@@ -23,7 +23,8 @@ use crate::harness::Context;
 use compare::compared;
 use moves::Moves;
 
-pub(crate) use results::{as_command, gyrocal};
+pub(crate) use records::make;
+pub(crate) use results::{as_command, gyrocal, placeless, told};
 
 /// Number of records.
 const RECORDS: usize = 40;
@@ -31,8 +32,8 @@ const RECORDS: usize = 40;
 /// A record, and the commands whose results are compared.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Case {
-    name: String,
+pub(crate) struct Case {
+    pub(crate) name: String,
     /// Platform, strapdown unit, several records of one, plant, or log of instruments.
     kind: String,
     /// Clean, faulty, set-up wrong, or cut: too short, or with a search that ends at its budget.
@@ -42,9 +43,9 @@ struct Case {
     slow: bool,
     /// What makes its files: lines of [`records::make`].
     #[serde(default)]
-    make: Vec<String>,
+    pub(crate) make: Vec<String>,
     /// Commands, with the words of [`gyrocal_testkit::contracts::words`].
-    run: Vec<String>,
+    pub(crate) run: Vec<String>,
 }
 
 /// The figures of the comparison; differences are printed before them. The small version leaves out slow records.
@@ -134,6 +135,11 @@ fn folder() -> PathBuf {
 }
 
 /// All cases.
+pub(crate) fn cases() -> Result<Vec<Case>, Error> {
+    table(&folder())
+}
+
+/// The cases of a folder.
 fn table(folder: &Path) -> Result<Vec<Case>, Error> {
     let path = folder.join("cases.toml");
     let table = toml::from_str(&std::fs::read_to_string(&path)?);

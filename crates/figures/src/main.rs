@@ -10,6 +10,7 @@ mod cost;
 mod diagnosis_ground;
 mod embedded;
 mod error;
+mod facts;
 mod field;
 mod figure;
 mod fleet;
@@ -59,7 +60,7 @@ struct Extent {
     /// Most records of each population.
     #[arg(long, value_name = "COUNT", conflicts_with = "small")]
     records: Option<u64>,
-    /// Only the record of this name (doors, part before).
+    /// Only the record of this name (doors, parts before and facts).
     #[arg(long = "record", value_name = "NAME")]
     named: Vec<String>,
     /// Also write the table into this file.

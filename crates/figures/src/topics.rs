@@ -8,9 +8,9 @@ use crate::harness::sources::{
 };
 use crate::harness::topic::{Part, Topic};
 use crate::{
-    any_plant, before, calibration, catalogue, comparison, diagnosis_ground, embedded, field,
-    fleet, gain, generator, house, kernel, logs, measured, naming, paper, plant_peers, records,
-    report, truth, watch,
+    any_plant, before, calibration, catalogue, comparison, diagnosis_ground, embedded, facts,
+    field, fleet, gain, generator, house, kernel, logs, measured, naming, paper, plant_peers,
+    records, report, truth, watch,
 };
 
 /// All topics.
@@ -286,6 +286,23 @@ pub(crate) const TOPICS: [Topic; 8] = [
                 "Results of 40 records, every key, against those of an earlier build.",
                 of(COMMAND, &["crates/figures/src/before", "tests/data/before"]),
                 before::figures,
+            ),
+            part(
+                "facts",
+                "What screens and pages of 200 answers show, against what an earlier build showed.",
+                of(
+                    COMMAND,
+                    &[
+                        "crates/figures/src/before",
+                        "crates/figures/src/facts",
+                        "crates/figures/src/facts.rs",
+                        "crates/evaluation",
+                        "crates/truth",
+                        "tests/data/before",
+                        "tests/data/facts",
+                    ],
+                ),
+                facts::figures,
             ),
             Part {
                 small: false,

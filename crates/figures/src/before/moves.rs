@@ -25,20 +25,20 @@ struct Move {
 /// All of them.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Moves {
+pub(crate) struct Moves {
     #[serde(default, rename = "move")]
     all: Vec<Move>,
 }
 
 impl Moves {
-    pub(super) fn read(folder: &Path) -> Result<Self, Error> {
+    pub(crate) fn read(folder: &Path) -> Result<Self, Error> {
         let path = folder.join(FILE);
         let moves = toml::from_str(&std::fs::read_to_string(&path)?);
         moves.map_err(|error| format!("{}: {error}", path.display()).into())
     }
 
     /// Whether a key of a record may differ. The entry that allows it is needed.
-    pub(super) fn allow(&mut self, record: &str, path: &str) -> bool {
+    pub(crate) fn allow(&mut self, record: &str, path: &str) -> bool {
         let any = |patterns: &[String], text| patterns.iter().any(|one| matches(one, text));
         let mut all = self.all.iter_mut();
         all.find(|one| any(&one.records, record) && any(&one.keys, path))
@@ -47,14 +47,14 @@ impl Moves {
     }
 
     /// Steps of the entries that allowed nothing.
-    pub(super) fn unneeded(&self) -> Vec<&str> {
+    pub(crate) fn unneeded(&self) -> Vec<&str> {
         let unneeded = self.all.iter().filter(|one| !one.is_needed);
         unneeded.map(|one| &*one.step).collect()
     }
 }
 
 /// Leaves of the file what stands above the first entry.
-pub(super) fn empty(folder: &Path) -> Result<(), Error> {
+pub(crate) fn empty(folder: &Path) -> Result<(), Error> {
     let path = folder.join(FILE);
     let text = std::fs::read_to_string(&path)?;
     let above = text.split("\n[[move]]").next().unwrap_or_default();

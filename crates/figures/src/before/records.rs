@@ -2,8 +2,13 @@
 
 use std::path::Path;
 
+use gyrocal_evaluation::{inject_any, scenario};
+use gyrocal_record::{Bench, Record};
+use gyrocal_statistics::deviates::Draw;
+use gyrocal_truth::faults::{BREAKAGES, UnlistedEffect, UnlistedKind, large_effects};
 use gyrocal_truth::plant::{Kind, Setting, simulate, with_strength};
 use gyrocal_truth::units::strapdown::UnitRun;
+use gyrocal_truth::{Scenario, Simulation};
 
 use super::results::ran;
 use crate::any_plant::loaded;
@@ -12,11 +17,15 @@ use crate::error::Error;
 /// Makes files in the folder of a record:
 ///
 /// - `plant PLANT SEED ROWS EFFECT STRENGTH`: `record.csv` of an example with a hidden effect of so many standard
-///   deviations, or with `none`, and `columns.toml`;
+///   deviations, one of the plant's in turn for `any`, or with `none`, and `columns.toml`;
+/// - `platform NAME SEED RUN HOURS [STRENGTH|large|unlisted]...`: `NAME.csv` and `NAME.toml` of a run of the platform
+///   of a seed, a row in ten minutes, with drawn effects: of the catalogue with so many standard deviations, a large
+///   one, or one that the catalogue lacks;
+/// - `broken SEED`: `record.csv` and `bench.toml`, one of them spoilt in a way of [`BREAKAGES`], in turn;
 /// - `unit SEED ROWS RAMP`: `record.csv`, `axes.csv` and `bench.toml` of a strapdown unit, a row in five minutes,
 ///   with a ramp of gyro y, deg/h/day;
 /// - any other line: what the command `gyrocal` writes.
-pub(super) fn make(line: &str, folder: &Path) -> Result<(), Error> {
+pub(crate) fn make(line: &str, folder: &Path) -> Result<(), Error> {
     let words: Vec<&str> = line.split(' ').collect();
     match words[..] {
         ["plant", plant, seed, rows, effect, strength] => {
@@ -24,12 +33,23 @@ pub(super) fn make(line: &str, folder: &Path) -> Result<(), Error> {
             let kind = kinds.find(|kind| kind.facts().name == plant);
             let kind = kind.ok_or_else(|| format!("`{line}`: found no plant of that name"))?;
             let mut setting = Setting::random(kind, seed.parse()?, rows.parse()?);
-            let mut effects = kind.facts().effects.iter();
-            if let Some(hidden) = effects.find(|(id, _)| *id == effect) {
+            let effects = kind.facts().effects;
+            let drawn = (effect == "any").then(|| &effects[setting.seed as usize % effects.len()]);
+            let mut named = effects.iter().filter(|(id, _)| *id == effect);
+            if let Some(hidden) = named.next().or(drawn) {
                 setting.hidden = *hidden;
                 setting = with_strength(&setting, strength.parse()?);
             }
             plant_record(&setting, folder)
+        }
+        ["platform", name, seed, run, hours, ref hidden @ ..] => {
+            let run = platform_run([seed.parse()?, run.parse()?], hours.parse()?, hidden)?;
+            written(&run.record, &run.bench, folder, name, name)
+        }
+        ["broken", seed] => {
+            let seed: u64 = seed.parse()?;
+            let broken = BREAKAGES[seed as usize % BREAKAGES.len()].record(seed)?;
+            written(&broken.record, &broken.bench, folder, "record", "bench")
         }
         ["unit", seed, rows, ramp] => {
             let ramp: f64 = ramp.parse()?;
@@ -52,6 +72,51 @@ pub(super) fn make(line: &str, folder: &Path) -> Result<(), Error> {
             (code, error) => Err(format!("`{line}`: exit code {code}: {error}").into()),
         },
     }
+}
+
+/// A run of the platform of a seed. Runs differ in attitude and noise.
+fn platform_run([seed, run]: [u64; 2], hours: f64, hidden: &[&str]) -> Result<Simulation, Error> {
+    /// Purpose of the stream of effects.
+    const EFFECTS: u64 = 71;
+    /// Distance between the numbers of two runs.
+    const RUNS: u64 = 100_000;
+    let random = &mut Draw::new(seed, EFFECTS);
+    let mut made = Scenario {
+        interval_s: 600.0,
+        duration_s: 3600.0 * hours,
+        gaps_s: Vec::new(),
+        ..scenario(seed)
+    };
+    let mut unlisted = None;
+    for one in hidden {
+        match *one {
+            "large" => made.hidden.extend(large_effects(&made, random)),
+            "unlisted" => {
+                let kind = *random.one_of(&UnlistedKind::ALL);
+                let mut effect = UnlistedEffect::draw(kind, &made, random)?;
+                effect.size = effect.largest_size;
+                unlisted = Some(effect);
+            }
+            strength => (made, _) = inject_any(made, strength.parse()?, random)?,
+        }
+    }
+    let other = scenario(seed + RUNS * run);
+    (made.initial, made.seed) = (other.initial, other.seed);
+    Ok(match unlisted {
+        Some(effect) => effect.simulate(&made)?,
+        None => gyrocal_truth::simulate(&made)?,
+    })
+}
+
+fn written(
+    record: &Record,
+    bench: &Bench,
+    folder: &Path,
+    name: &str,
+    bench_name: &str,
+) -> Result<(), Error> {
+    record.write(&folder.join(format!("{name}.csv")))?;
+    Ok(bench.write(&folder.join(format!("{bench_name}.toml")))?)
 }
 
 fn plant_record(setting: &Setting, folder: &Path) -> Result<(), Error> {

@@ -45,17 +45,24 @@ pub(crate) fn gyrocal(folder: &Path) -> Result<Command, Error> {
 
 /// Runs a line as `gyrocal`; returns the exit code and what it says on stderr.
 pub(super) fn ran(line: &str, folder: &Path) -> Result<(i32, String), Error> {
+    let (code, [_, error]) = told(line, folder)?;
+    Ok((code, error))
+}
+
+/// Runs a line as `gyrocal`; returns the exit code and what it says on stdout and on stderr.
+pub(crate) fn told(line: &str, folder: &Path) -> Result<(i32, [String; 2]), Error> {
     let mut command = gyrocal(folder)?;
-    command.args(words(line, folder));
+    command.args(words(line, folder)).env_remove("COLUMNS");
     let outcome = run(command.env_remove("RUST_BACKTRACE"));
     let code = outcome
         .code
         .ok_or_else(|| format!("`{line}` was ended by a signal"))?;
-    Ok((code, placeless(outcome.stderr.trim(), folder)))
+    let told = [outcome.stdout, outcome.stderr];
+    Ok((code, told.map(|text| placeless(text.trim(), folder))))
 }
 
 /// A text without the places of the repository and of the folder of the record.
-fn placeless(text: &str, folder: &Path) -> String {
+pub(crate) fn placeless(text: &str, folder: &Path) -> String {
     let places = [(&*workspace(), "@"), (folder, "%")];
     places.iter().fold(text.to_owned(), |text, (place, sign)| {
         text.replace(&format!("{}/", place.display()), sign)
