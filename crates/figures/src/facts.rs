@@ -128,7 +128,13 @@ pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
 /// The answers of all kinds, and those of the records of [`crate::before`].
 fn answers(folder: &Path, small: bool) -> Result<Vec<Answer>, Error> {
     /// Commands that write a page.
-    const WITH_PAGE: [&str; 4] = ["calibrate ", "diagnose ", "plant diagnose ", "tumble "];
+    const WITH_PAGE: [&str; 5] = [
+        "allan ",
+        "calibrate ",
+        "diagnose ",
+        "plant diagnose ",
+        "tumble ",
+    ];
     let path = folder.join("answers.toml");
     let table = toml::from_str(&std::fs::read_to_string(&path)?);
     let mut table: BTreeMap<String, Vec<Kind>> =
