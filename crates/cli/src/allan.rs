@@ -21,7 +21,7 @@ use crate::numbers::{positive, probability};
 use crate::outputs::{self, manifest};
 use crate::page::Views;
 use crate::tables::{right, table};
-use crate::{Answer, Failure};
+use crate::{Failure, Reply};
 
 /// Allan deviation of columns of a log, and the parts of their noise.
 ///
@@ -94,14 +94,14 @@ impl Estimator {
 }
 
 /// Runs the command; returns the text for stdout.
-pub(crate) fn run(arguments: &AllanArguments) -> Result<Answer, Failure> {
+pub(crate) fn run(arguments: &AllanArguments) -> Result<Reply, Failure> {
     let mut inputs = vec![&*arguments.log];
     inputs.extend(arguments.log_description.as_deref());
     let json = arguments.json.as_deref();
     outputs::check(&inputs, json, arguments.views.figures())?;
     arguments.views.check(&inputs, &[("--json", json)])?;
     let analysed = analysed(arguments).map_err(|error| unusable(&arguments.log, error))?;
-    let mut answer = Answer::of(screen::first(&analysed), summary(arguments, &analysed));
+    let mut answer = Reply::of(screen::first(&analysed), summary(arguments, &analysed));
     let mut outputs = Outputs::new();
     if arguments.views.are_asked() {
         let shown = AllanAnswer {

@@ -30,7 +30,7 @@ use crate::numbers::positive;
 use crate::outputs;
 use crate::page::{self, Views};
 use crate::progress::Progress;
-use crate::{Answer, Failure, exit, gyro_axes, records};
+use crate::{Failure, Reply, exit, gyro_axes, records};
 pub use failed::NotCalibrated;
 use failed::WrongSetup;
 use inputs::Measurement;
@@ -191,7 +191,7 @@ impl CalibrateArguments {
 const FITTED: f64 = 0.5;
 
 /// Runs the command; returns the text for stdout.
-pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Answer, Failure> {
+pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Reply, Failure> {
     arguments.check()?;
     let inputs = arguments.inputs();
     let paths: Vec<&Path> = inputs.iter().map(|(_, path)| *path).collect();
@@ -234,7 +234,7 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Answer, Failure> {
         gyro_axes,
     };
     let next = screen::diagnose(&found, arguments);
-    let mut answer = Answer::of(screen::first(&found, next), prose::summary(&found));
+    let mut answer = Reply::of(screen::first(&found, next), prose::summary(&found));
     let mut outputs = Outputs::new();
     let asked = [&arguments.json, &arguments.coefficients];
     if asked.into_iter().any(Option::is_some) || arguments.views.are_asked() {

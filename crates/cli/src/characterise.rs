@@ -17,7 +17,7 @@ use miette::miette;
 
 use crate::monte_carlo::progress::SeedProgress;
 use crate::outputs::{manifest, refuse_overlap, refuse_unwritable};
-use crate::{Answer, Failure, exit};
+use crate::{Failure, Reply, exit};
 
 /// Measure the operating characteristics of the diagnosis on simulated records with hidden effects.
 ///
@@ -70,7 +70,7 @@ enum Asked {
 }
 
 /// Runs the command; returns the text for stdout.
-pub(crate) fn run(arguments: &CharacteriseArguments) -> Result<Answer, Failure> {
+pub(crate) fn run(arguments: &CharacteriseArguments) -> Result<Reply, Failure> {
     check_outputs(arguments)?;
     let methods = methods(&arguments.methods)?;
     if let Some(folder) = &arguments.results {
@@ -87,7 +87,7 @@ pub(crate) fn run(arguments: &CharacteriseArguments) -> Result<Answer, Failure> 
             reports.push(report(arguments, *cell, &methods)?);
         }
     }
-    let mut answer = Answer::of(screen::first(&reports), sheet::text(&reports));
+    let mut answer = Reply::of(screen::first(&reports), sheet::text(&reports));
     if arguments.exit_code && !reports.iter().all(CellReport::holds) {
         answer.exit_code = exit::FOUND;
     }

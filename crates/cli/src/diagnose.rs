@@ -8,10 +8,11 @@ use std::path::{Path, PathBuf};
 
 use clap::{ArgAction, Args, ValueEnum};
 use gyrocal::generated::MODEL_HASH;
+use gyrocal_answer::{Answer, Verdict};
 use gyrocal_calibration::{CalibrationError, Run};
 use gyrocal_diagnosis::{
-    DiagnoseOptions, Diagnosis, DiagnosisError, DiagnosisResult, FILTER_EFFECT, Gate, TestedFilter,
-    Verdict, diagnose_watched, prose,
+    DiagnoseOptions, Diagnosis, DiagnosisError, FILTER_EFFECT, Gate, TestedFilter,
+    diagnose_watched, prose,
 };
 use gyrocal_pages::{of_diagnosis, of_result};
 use gyrocal_record::{Bench, InputRole, Outputs, printable_path};
@@ -22,7 +23,7 @@ use crate::outputs::{self, manifest_of, same_file};
 use crate::page;
 use crate::pictures;
 use crate::progress::Progress;
-use crate::{Answer, Failure, exit, gyro_axes, records};
+use crate::{Failure, Reply, exit, gyro_axes, records};
 pub use failed::NotDiagnosed;
 
 /// Show what the model gets wrong about a record, and name the cause.
@@ -148,7 +149,7 @@ struct DiagnosisRun<'a> {
 }
 
 /// Runs the command; returns the text for stdout.
-pub(crate) fn run(arguments: &DiagnoseArguments) -> Result<Answer, Failure> {
+pub(crate) fn run(arguments: &DiagnoseArguments) -> Result<Reply, Failure> {
     let inputs = checked_inputs(arguments)?;
     let ([record], [bench_path]) = (&arguments.records[..], &arguments.benches[..]) else {
         return several::run(arguments, &inputs);
@@ -262,11 +263,11 @@ fn checked_inputs(arguments: &DiagnoseArguments) -> Result<Vec<(InputRole, &Path
 /// The answer of a record whose set-up is wrong: no pictures, as nothing was fitted.
 fn stopped(
     arguments: &DiagnoseArguments,
-    mut result: DiagnosisResult,
+    mut result: Answer,
     inputs: &[(InputRole, &Path)],
-) -> Result<Answer, Failure> {
+) -> Result<Reply, Failure> {
     result.manifest = manifest_of(MODEL_HASH, result.manifest.seed, inputs)?;
-    let mut answer = Answer::of(
+    let mut answer = Reply::of(
         prose::first_screen(&result),
         layout(&prose::diagnosis(&result)),
     );
@@ -276,7 +277,7 @@ fn stopped(
         answer.wrote(path, page::WHAT);
     }
     if let Some(path) = &arguments.json {
-        outputs.stage_json(path, &result)?;
+        outputs::stage_answer(path, &result, &mut outputs)?;
         answer.wrote(path, "the result for programs");
     }
     outputs.commit()?;
@@ -287,9 +288,9 @@ fn stopped(
 }
 
 /// Writes all outputs, and lays out the words.
-fn answer(arguments: &DiagnoseArguments, run: &DiagnosisRun<'_>) -> Result<Answer, Failure> {
+fn answer(arguments: &DiagnoseArguments, run: &DiagnosisRun<'_>) -> Result<Reply, Failure> {
     let result = &run.diagnosis.result;
-    let mut answer = Answer::of(
+    let mut answer = Reply::of(
         prose::first_screen(result),
         layout(&prose::diagnosis(result)),
     );
@@ -303,7 +304,7 @@ fn answer(arguments: &DiagnoseArguments, run: &DiagnosisRun<'_>) -> Result<Answe
         answer.wrote(path, page::WHAT);
     }
     if let Some(path) = &arguments.json {
-        outputs.stage_json(path, result)?;
+        outputs::stage_answer(path, result, &mut outputs)?;
         answer.wrote(path, "the result for programs");
     }
     stage_tables(arguments, result, &mut outputs, &mut answer)?;
@@ -315,9 +316,9 @@ fn answer(arguments: &DiagnoseArguments, run: &DiagnosisRun<'_>) -> Result<Answe
 /// Stages the tables of findings and coefficients that are asked for.
 fn stage_tables(
     arguments: &DiagnoseArguments,
-    result: &DiagnosisResult,
+    result: &Answer,
     outputs: &mut Outputs,
-    answer: &mut Answer,
+    answer: &mut Reply,
 ) -> Result<(), Failure> {
     let findings = || result.finding_table();
     let path = arguments.findings.as_deref();
@@ -333,6 +334,7 @@ fn exit_code(arguments: &DiagnoseArguments, verdict: Verdict) -> u8 {
         (true, Verdict::EffectsFound) => exit::FOUND,
         (true, Verdict::Unexplained) => exit::UNEXPLAINED,
         (true, Verdict::Setup) => exit::SETUP,
+        (true, Verdict::NotSettled) => exit::NOT_SETTLED,
         _ => exit::DONE,
     }
 }

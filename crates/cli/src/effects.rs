@@ -9,7 +9,7 @@ use gyrocal_record::{any_of, nearest_names, printable_line};
 use miette::miette;
 
 use crate::Failure;
-use crate::answer::Answer;
+use crate::reply::Reply;
 use crate::tables::{right, table};
 
 /// List the effects that a diagnosis knows, or explain one.
@@ -24,12 +24,12 @@ pub(crate) struct EffectsArguments {
 }
 
 /// Runs the command.
-pub(crate) fn run(arguments: &EffectsArguments) -> Result<Answer, Failure> {
+pub(crate) fn run(arguments: &EffectsArguments) -> Result<Reply, Failure> {
     let Some(id) = &arguments.id else {
-        return Ok(Answer::of(overview(), listed(EFFECTS.iter())));
+        return Ok(Reply::of(overview(), listed(EFFECTS.iter())));
     };
     if let Some(effect) = EFFECTS.iter().find(|effect| effect.id == id) {
-        return Ok(Answer::of(explained(effect), String::new()));
+        return Ok(Reply::of(explained(effect), String::new()));
     }
     let family: Vec<&Effect> = EFFECTS
         .iter()
@@ -45,7 +45,7 @@ pub(crate) fn run(arguments: &EffectsArguments) -> Result<Answer, Failure> {
                 words: format!("{}: {}; below: {}", first.family, ids.join(", "), first.id),
             },
         );
-        return Ok(Answer::of(screen, listed(family.into_iter())));
+        return Ok(Reply::of(screen, listed(family.into_iter())));
     }
     let mut known: Vec<&str> = EFFECTS.iter().map(|effect| effect.id).collect();
     known.extend(EFFECTS.iter().map(|effect| effect.family));

@@ -10,7 +10,7 @@ use miette::{IntoDiagnostic as _, Report, WrapErr as _};
 
 use crate::extend::known;
 use crate::outputs::refuse_overlap;
-use crate::{Answer, Failure};
+use crate::{Failure, Reply};
 
 /// Write a filter as one self-contained Rust file.
 ///
@@ -52,7 +52,7 @@ impl From<NumberArgument> for Number {
 }
 
 /// Runs the command; returns the text for stdout.
-pub(crate) fn run(arguments: &EmitArguments) -> Result<Answer, Failure> {
+pub(crate) fn run(arguments: &EmitArguments) -> Result<Reply, Failure> {
     let files = [&arguments.model, &arguments.module];
     let inputs: Vec<&Path> = files.into_iter().flatten().map(PathBuf::as_path).collect();
     refuse_overlap(&inputs, &[("--out", Some(&arguments.out))])?;
@@ -78,7 +78,7 @@ pub(crate) fn run(arguments: &EmitArguments) -> Result<Answer, Failure> {
     outputs.stage(&arguments.out, text.as_bytes())?;
     outputs.commit()?;
     let effects = extended.map_or_else(Vec::new, |(model, _, _)| model.effects);
-    Ok(Answer::of(
+    Ok(Reply::of(
         screen(arguments, number, &effects),
         String::new(),
     ))

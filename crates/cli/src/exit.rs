@@ -8,10 +8,13 @@ pub(crate) const FAILED: u8 = 1;
 pub(crate) const USAGE: u8 = 2;
 /// With `--exit-code`: effects were found, or a figure misses its target.
 pub(crate) const FOUND: u8 = 3;
-/// With `--exit-code`: the residuals are unexplained, or the search ended at its budget with nothing named.
+/// With `--exit-code`: the residuals are unexplained.
 pub(crate) const UNEXPLAINED: u8 = 4;
 /// With `--exit-code`: the set-up is wrong.
 pub(crate) const SETUP: u8 = 5;
+
+/// With `--exit-code`: names are not settled.
+pub(crate) const NOT_SETTLED: u8 = 6;
 
 /// The same for a user, below the help of every command.
 pub(crate) const HELP: &str = "\
@@ -21,5 +24,6 @@ Exit codes:
   2  the command line is wrong
   with --exit-code (diagnose, characterise) also
   3  diagnose: effects were found; characterise: a figure misses its target
-  4  diagnose: the residuals are unexplained, or the search ended with nothing named
-  5  diagnose: the set-up is wrong";
+  4  diagnose: the residuals are unexplained
+  5  diagnose: the set-up is wrong
+  6  diagnose: names are not settled (search cut, or the rest is not white)";

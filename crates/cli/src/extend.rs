@@ -6,12 +6,12 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use gyrocal::generated::MODEL_HASH;
+use gyrocal_answer::read_platform;
 use gyrocal_diagnosis::prose::{Screen, Standing};
-use gyrocal_diagnosis::result;
 use gyrocal_record::{ExtensionReport, Gyros, LeftOut, Outputs, SCHEMA_VERSION, printable_path};
 
 use crate::outputs::{manifest, refuse_overlap};
-use crate::{Answer, Failure};
+use crate::{Failure, Reply};
 pub(crate) use effects::known;
 use effects::{Extension, of_diagnosis, of_list, with_members};
 
@@ -67,7 +67,7 @@ impl From<GyrosArgument> for Gyros {
 }
 
 /// Runs the command; returns the text for stdout.
-pub(crate) fn run(arguments: &ExtendArguments) -> Result<Answer, Failure> {
+pub(crate) fn run(arguments: &ExtendArguments) -> Result<Reply, Failure> {
     let inputs: Vec<&Path> = arguments.diagnosis.iter().map(PathBuf::as_path).collect();
     refuse_overlap(
         &inputs,
@@ -79,7 +79,7 @@ pub(crate) fn run(arguments: &ExtendArguments) -> Result<Answer, Failure> {
     let extension = match &arguments.diagnosis {
         Some(path) => {
             let name = printable_path(path);
-            let diagnosis = with_members(result::read(path)?, &arguments.member, &name);
+            let diagnosis = with_members(read_platform(path)?, &arguments.member, &name);
             diagnosis.and_then(|diagnosis| of_diagnosis(&diagnosis, &name))
         }
         None => of_list(
@@ -114,7 +114,7 @@ fn report(extension: &Extension, inputs: &[&Path]) -> Result<ExtensionReport, Fa
     })
 }
 
-fn summary(arguments: &ExtendArguments, extension: &Extension) -> Answer {
+fn summary(arguments: &ExtendArguments, extension: &Extension) -> Reply {
     let model = &extension.model;
     let mut screen = Screen::new(
         Standing::Good,
@@ -169,7 +169,7 @@ fn summary(arguments: &ExtendArguments, extension: &Extension) -> Answer {
         "what to do",
         "derive the filter in your package: docs/extending.md",
     );
-    let mut answer = Answer::of(screen, String::new());
+    let mut answer = Reply::of(screen, String::new());
     if let Some(path) = &arguments.json {
         answer.wrote(path, "the result for programs");
     }

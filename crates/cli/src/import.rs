@@ -15,7 +15,7 @@ use gyrocal_record::{AXES, Outputs, printable_path};
 use crate::measured::unusable;
 use crate::numbers::{angle_deg, angle_sigma_deg, positive};
 use crate::outputs::{manifest, refuse_overlap};
-use crate::{Answer, Failure};
+use crate::{Failure, Reply};
 
 /// Make a record from a log of another kind of instrument.
 #[derive(Debug, Args)]
@@ -85,14 +85,14 @@ struct StrapdownArguments {
 }
 
 /// Runs the command; returns the text for stdout.
-pub(crate) fn run(arguments: &ImportArguments) -> Result<Answer, Failure> {
+pub(crate) fn run(arguments: &ImportArguments) -> Result<Reply, Failure> {
     match &arguments.kind {
         Kind::Csv(arguments) => table::run(arguments),
         Kind::Strapdown(arguments) => strapdown(arguments),
     }
 }
 
-fn strapdown(arguments: &StrapdownArguments) -> Result<Answer, Failure> {
+fn strapdown(arguments: &StrapdownArguments) -> Result<Reply, Failure> {
     let inputs = [&*arguments.log, &*arguments.log_description];
     refuse_overlap(
         &inputs,
@@ -123,7 +123,7 @@ fn strapdown(arguments: &StrapdownArguments) -> Result<Answer, Failure> {
     outputs.commit()?;
     let note = clock.map_or_else(String::new, |note| format!("{note}\n\n"));
     let report = &imported.report;
-    let mut answer = Answer::of(
+    let mut answer = Reply::of(
         screen::first(arguments, report),
         note + &summary(arguments, report),
     );

@@ -11,7 +11,6 @@
 //! `error_report.rs`, without characters that would steer it.
 
 mod allan;
-mod answer;
 mod calibrate;
 mod characterise;
 mod command;
@@ -38,6 +37,7 @@ mod plant;
 mod progress;
 mod rates;
 mod records;
+mod reply;
 mod report;
 mod simulate;
 mod tables;
@@ -54,13 +54,13 @@ use std::path::Path;
 use gyrocal_plant::{LoadedPlant, PlantError};
 use miette::Report;
 
-use crate::answer::Answer;
 pub use crate::calibrate::NotCalibrated;
 use crate::command::{Cli, Command, definition};
 pub use crate::diagnose::NotDiagnosed;
 use crate::error_report::ErrorReport;
 pub use crate::plan::NotPlanned;
 use crate::plant::PlantCli;
+use crate::reply::Reply;
 use crate::terminal::Shown;
 
 /// Runs the command with its arguments, the first of which is the name of the program: reads and
@@ -135,7 +135,7 @@ fn start(how: &Shown) {
 }
 
 /// Prints an answer or a failure; returns the exit code.
-fn shown(how: &Shown, answer: Result<Answer, Failure>) -> u8 {
+fn shown(how: &Shown, answer: Result<Reply, Failure>) -> u8 {
     match answer {
         Ok(answer) => {
             let text = answer.shown(width::columns(), how.verbose > 0);
@@ -163,11 +163,11 @@ fn shown(how: &Shown, answer: Result<Answer, Failure>) -> u8 {
 }
 
 /// The answer of a command; without one, what people do first.
-fn answer(command: Option<&Command>) -> Result<Answer, Failure> {
+fn answer(command: Option<&Command>) -> Result<Reply, Failure> {
     let Some(command) = command else {
-        return Ok(Answer {
+        return Ok(Reply {
             exit_code: exit::USAGE,
-            ..Answer::from(help::WELCOME.to_owned())
+            ..Reply::from(help::WELCOME.to_owned())
         });
     };
     match command {

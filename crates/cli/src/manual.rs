@@ -11,7 +11,7 @@ use gyrocal_record::{Outputs, printable_path};
 use miette::miette;
 
 use crate::Failure;
-use crate::answer::Answer;
+use crate::reply::Reply;
 
 /// Print the completions of a shell.
 #[derive(Debug, Args)]
@@ -36,7 +36,7 @@ pub(crate) fn completions(arguments: &CompletionsArguments, mut definition: Comm
 }
 
 /// Runs `gyrocal man`: writes all pages or none.
-pub(crate) fn pages(arguments: &ManArguments, mut definition: Command) -> Result<Answer, Failure> {
+pub(crate) fn pages(arguments: &ManArguments, mut definition: Command) -> Result<Reply, Failure> {
     let folder = &arguments.folder;
     let refused = |reason: std::io::Error| {
         Failure::Work(miette!(
@@ -57,7 +57,7 @@ pub(crate) fn pages(arguments: &ManArguments, mut definition: Command) -> Result
         format!("{} manual pages in {}", names.len(), printable_path(folder)),
     );
     screen.fact("pages", names.join(", "));
-    Ok(Answer::of(screen, String::new()))
+    Ok(Reply::of(screen, String::new()))
 }
 
 fn stage(

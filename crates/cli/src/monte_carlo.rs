@@ -21,7 +21,7 @@ use miette::miette;
 
 use crate::outputs::{manifest, refuse_unwritable};
 use crate::page::Views;
-use crate::{Answer, Failure};
+use crate::{Failure, Reply};
 use progress::SeedProgress;
 
 /// Evaluate the calibration by Monte Carlo simulation.
@@ -62,7 +62,7 @@ pub(crate) struct MonteCarloArguments {
 const MAX_SEEDS: u64 = 10_000_000;
 
 /// Runs the command; returns the text for stdout.
-pub(crate) fn run(arguments: &MonteCarloArguments) -> Result<Answer, Failure> {
+pub(crate) fn run(arguments: &MonteCarloArguments) -> Result<Reply, Failure> {
     let others = [
         ("--results", arguments.results.as_deref()),
         ("--json", arguments.json.as_deref()),
@@ -83,7 +83,7 @@ pub(crate) fn run(arguments: &MonteCarloArguments) -> Result<Answer, Failure> {
             failure.message
         )));
     }
-    let mut answer = Answer::of(
+    let mut answer = Reply::of(
         screen::first(arguments, &summary),
         summary::text(arguments, &summary),
     );

@@ -4,7 +4,9 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::sync::{PoisonError, RwLock};
 
+use gyrocal_answer::{Answer, write_text};
 use gyrocal_record::{Error, Input, InputRole, Manifest, Outputs, printable_path, shell_quoted};
+use miette::miette;
 
 use crate::{Failure, pictures};
 
@@ -35,6 +37,17 @@ pub(crate) fn manifest_of(
         input.role = Some(*role);
     }
     Ok(manifest)
+}
+
+/// Stages an answer as JSON; one with a number that is not finite is refused.
+pub(crate) fn stage_answer(
+    path: &Path,
+    answer: &Answer,
+    outputs: &mut Outputs,
+) -> Result<(), Failure> {
+    let text = write_text(answer)
+        .map_err(|error| Failure::Work(miette!("{}: {error}", printable_path(path))))?;
+    Ok(outputs.stage(path, text.as_bytes())?)
 }
 
 /// Refuses an output that is also an input, and two outputs in one file.

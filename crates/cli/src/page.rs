@@ -8,7 +8,7 @@ use gyrocal_record::Outputs;
 use miette::miette;
 
 use crate::outputs::{refuse_overlap, refuse_unwritable};
-use crate::{Answer, Failure, pictures};
+use crate::{Failure, Reply, pictures};
 
 /// The help of `--report`.
 pub(crate) const HELP: &str =
@@ -86,7 +86,7 @@ impl Views {
         of: &Path,
         part: Part,
         outputs: &mut Outputs,
-        answer: &mut Answer,
+        answer: &mut Reply,
     ) -> Result<(), Failure> {
         if let Some(folder) = &self.figures {
             let drawn = charts(part.clone());

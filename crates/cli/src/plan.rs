@@ -19,7 +19,7 @@ use crate::numbers::{positive, probability};
 use crate::outputs::{self, manifest_of};
 use crate::page::Views;
 use crate::progress::Progress;
-use crate::{Answer, Failure, gyro_axes, records};
+use crate::{Failure, Reply, gyro_axes, records};
 pub use failed::NotPlanned;
 use options::{durations_s, goal, limit, limits, refuse_repeated, wished_sigma};
 
@@ -123,7 +123,7 @@ enum AimArgument {
 const DIAGNOSED: f64 = 0.5;
 
 /// Runs the command; returns the text for stdout.
-pub(crate) fn run(arguments: &PlanArguments) -> Result<Answer, Failure> {
+pub(crate) fn run(arguments: &PlanArguments) -> Result<Reply, Failure> {
     records::check_benches(arguments.benches.len(), arguments.records.len())?;
     gyro_axes::check(&arguments.gyro_axes, arguments.records.len())?;
     let read = arguments.inputs();
@@ -165,7 +165,7 @@ pub(crate) fn run(arguments: &PlanArguments) -> Result<Answer, Failure> {
     drop(progress);
     planned.setup.clone_from(&known.setup);
     planned.manifest = manifest_of(MODEL_HASH, options.seed, &read)?;
-    let mut answer = Answer::of(first_screen(&planned), layout(&prose(&planned)));
+    let mut answer = Reply::of(first_screen(&planned), layout(&prose(&planned)));
     let mut outputs = Outputs::new();
     if arguments.views.are_asked() {
         let part = of_plan(&planned);

@@ -12,8 +12,7 @@ use clap::{Args, Parser, Subcommand};
 use gyrocal_plant::{LoadedPlant, PlantError};
 use miette::Report;
 
-use crate::terminal::Shown;
-use crate::{Answer, Failure};
+use crate::{Failure, Reply, terminal};
 
 pub(crate) use new::{NewPlantArguments, run as run_new};
 
@@ -38,7 +37,7 @@ enum PlantCommand {
 #[command(about = "Diagnosis of records of one plant: docs/any-plant.md of gyrocal")]
 pub(crate) struct PlantCli {
     #[command(flatten)]
-    pub(crate) shown: Shown,
+    pub(crate) shown: terminal::Shown,
     #[command(subcommand)]
     command: OwnCommand,
 }
@@ -72,7 +71,7 @@ impl From<gyrocal_plant_codegen::Error> for Failure {
 }
 
 /// Runs the command; returns its answer.
-pub(crate) fn run(arguments: &PlantArguments) -> Result<Answer, Failure> {
+pub(crate) fn run(arguments: &PlantArguments) -> Result<Reply, Failure> {
     match &arguments.command {
         PlantCommand::Derive(arguments) => derive::run(arguments),
         PlantCommand::Diagnose(arguments) => {
@@ -89,7 +88,7 @@ pub(crate) fn run(arguments: &PlantArguments) -> Result<Answer, Failure> {
 pub(crate) fn run_own(
     cli: &PlantCli,
     plant: Result<LoadedPlant, PlantError>,
-) -> Result<Answer, Failure> {
+) -> Result<Reply, Failure> {
     match &cli.command {
         OwnCommand::Diagnose(arguments) => diagnose::run(None, arguments, || plant),
         OwnCommand::Extend(arguments) => extend::run(arguments),

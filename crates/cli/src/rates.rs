@@ -16,7 +16,7 @@ use crate::measured::unusable;
 use crate::numbers::{angle_sigma_deg, probability};
 use crate::outputs::{self, manifest};
 use crate::tables::table;
-use crate::{Answer, Failure};
+use crate::{Failure, Reply};
 
 /// Biases, scales and effects of gyros from logs at rest or on a turntable, in rates.
 ///
@@ -47,7 +47,7 @@ pub(crate) struct RatesArguments {
 }
 
 /// Runs the command; returns the text for stdout.
-pub(crate) fn run(arguments: &RatesArguments) -> Result<Answer, Failure> {
+pub(crate) fn run(arguments: &RatesArguments) -> Result<Reply, Failure> {
     let mut inputs: Vec<&Path> = arguments.logs.iter().map(|log| &**log).collect();
     inputs.push(&arguments.log_description);
     outputs::check(&inputs, arguments.json.as_deref(), None)?;
@@ -60,7 +60,7 @@ pub(crate) fn run(arguments: &RatesArguments) -> Result<Answer, Failure> {
     for gyro in &report.gyros {
         of_gyro(&mut text, gyro, report.logs.len() > 1);
     }
-    let mut answer = Answer::of(screen::first(arguments, &report), text);
+    let mut answer = Reply::of(screen::first(arguments, &report), text);
     let mut outputs = Outputs::new();
     if let Some(path) = &arguments.json {
         outputs.stage_json(path, &ResultFile::new(manifest("", 0, &inputs)?, &report))?;

@@ -10,7 +10,7 @@ use gyrocal_record::{Outputs, Record, RecordFile, ResultTable, printable_path};
 use miette::miette;
 
 use crate::measured::unusable;
-use crate::{Answer, Failure, terminal};
+use crate::{Failure, Reply, terminal};
 
 /// The map of records in other formats.
 #[derive(Clone, Debug, Default, Args)]
@@ -76,7 +76,7 @@ pub(crate) fn stage(
     table: impl FnOnce() -> ResultTable,
     what: &str,
     outputs: &mut Outputs,
-    answer: &mut Answer,
+    answer: &mut Reply,
 ) -> Result<(), Failure> {
     if let Some(path) = path {
         outputs.stage(path, &table().content(path)?)?;

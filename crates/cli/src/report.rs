@@ -6,11 +6,12 @@ use std::path::{Path, PathBuf};
 
 use clap::{ArgAction, Args};
 use gyrocal::generated::MODEL_HASH;
+use gyrocal_answer::read_text;
 use gyrocal_calibration::UncertaintyBudget;
 use gyrocal_design::PlanResult;
 use gyrocal_diagnosis::{
     DiagnoseOptions, DiagnosisError, Gate, RecordUncertainty, UncertaintyResult, diagnose_gated,
-    record_uncertainty, result,
+    record_uncertainty,
 };
 use gyrocal_pages::{Part, of_budget, of_calibration, of_diagnosis, of_plan, of_result, of_spread};
 use gyrocal_record::{
@@ -24,7 +25,7 @@ use crate::diagnose::NotDiagnosed;
 use crate::outputs::{manifest, manifest_of, refuse_overlap, refuse_unwritable};
 use crate::progress::Progress;
 use crate::records::refuse_shared_rows;
-use crate::{Answer, Failure, page, records};
+use crate::{Failure, Reply, page, records};
 
 /// Make a report of records or results: one HTML file that opens in any browser, offline.
 ///
@@ -54,7 +55,7 @@ pub(crate) struct ReportArguments {
 }
 
 /// Runs the command.
-pub(crate) fn run(arguments: &ReportArguments) -> Result<Answer, Failure> {
+pub(crate) fn run(arguments: &ReportArguments) -> Result<Reply, Failure> {
     let records = arguments.inputs.iter().filter(|path| !is_result(path));
     let records = records.count();
     let benches = arguments.benches.len();
@@ -102,7 +103,7 @@ pub(crate) fn run(arguments: &ReportArguments) -> Result<Answer, Failure> {
             of_file(path)?
         });
     }
-    let mut answer = Answer::default();
+    let mut answer = Reply::default();
     let mut outputs = Outputs::new();
     if arguments.uncertainty {
         let manifest = manifest(MODEL_HASH, DiagnoseOptions::default().seed, &all)?;
@@ -110,7 +111,7 @@ pub(crate) fn run(arguments: &ReportArguments) -> Result<Answer, Failure> {
         if let (Some(part), Some(spread)) = (parts.last_mut(), &found.spread) {
             part.sections.push(of_spread(spread));
         }
-        answer = Answer::of(budget::screen(&found), budget::text(&found));
+        answer = Reply::of(budget::screen(&found), budget::text(&found));
         if let Some(path) = json {
             outputs.stage_json(path, &found)?;
             answer.wrote(path, "uncertainty budgets");
@@ -179,7 +180,7 @@ fn of_file(path: &Path) -> Result<Part, Failure> {
     let source = SourceText::read(path)?;
     let has = |key: &str| source.text().contains(&format!("\"{key}\""));
     if has("findings") {
-        return Ok(of_result(&result::read_text(&source)?));
+        return Ok(of_result(&read_text(&source)?));
     }
     if has("proposals") {
         let plan: PlanResult = read(path, &source, gyrocal_design::SCHEMA_VERSION)?;

@@ -10,7 +10,7 @@ use miette::miette;
 
 use crate::outputs::{manifest, refuse_overlap};
 use crate::progress::Progress;
-use crate::{Answer, Failure};
+use crate::{Failure, Reply};
 
 /// Simulate a record from a scenario with known coefficients, bench and sampling.
 ///
@@ -41,7 +41,7 @@ pub(crate) struct SimulateArguments {
 const SEED_MAX: u64 = i64::MAX as u64;
 
 /// Runs the command; returns the text for stdout.
-pub(crate) fn run(arguments: &SimulateArguments) -> Result<Answer, Failure> {
+pub(crate) fn run(arguments: &SimulateArguments) -> Result<Reply, Failure> {
     refuse_overlap(
         &[&arguments.scenario],
         &[
@@ -86,7 +86,7 @@ fn write(
     Ok(())
 }
 
-fn summary(arguments: &SimulateArguments, scenario: &Scenario, simulation: &Simulation) -> Answer {
+fn summary(arguments: &SimulateArguments, scenario: &Scenario, simulation: &Simulation) -> Reply {
     let mut screen = Screen::new(
         Standing::Neutral,
         "SIMULATED",
@@ -112,7 +112,7 @@ fn summary(arguments: &SimulateArguments, scenario: &Scenario, simulation: &Simu
             screen.then(format!("gyrocal diagnose {files}"), "finds what is hidden");
         }
     }
-    let mut answer = Answer::of(screen, String::new());
+    let mut answer = Reply::of(screen, String::new());
     if let Some(path) = &arguments.bench_out {
         answer.wrote(path, "bench description");
     }

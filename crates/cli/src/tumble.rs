@@ -27,7 +27,7 @@ use crate::numbers::{positive, probability};
 use crate::outputs::{self, manifest};
 use crate::page;
 use crate::pictures;
-use crate::{Answer, Failure};
+use crate::{Failure, Reply};
 
 /// Multi-position test: fit the drift law to static stops and find missing terms.
 ///
@@ -80,7 +80,7 @@ enum Report {
 }
 
 /// Runs the command; returns the text for stdout.
-pub(crate) fn run(arguments: &TumbleArguments) -> Result<Answer, Failure> {
+pub(crate) fn run(arguments: &TumbleArguments) -> Result<Reply, Failure> {
     let mut inputs: Vec<&Path> = arguments.logs.iter().map(|log| &**log).collect();
     inputs.push(&arguments.log_description);
     outputs::check(
@@ -115,7 +115,7 @@ pub(crate) fn run(arguments: &TumbleArguments) -> Result<Answer, Failure> {
         Report::Few(report) => text += &few::text(report, arguments.false_alarm),
     }
     not_identifiable(&mut text, &prepared);
-    let mut answer = Answer::of(screen::first(arguments, &prepared, &report), text);
+    let mut answer = Reply::of(screen::first(arguments, &prepared, &report), text);
     // The folder of pictures first: the result for programs may go there too.
     if let Some(folder) = &arguments.figures {
         match &report {

@@ -15,7 +15,7 @@ use crate::diagnose::NotDiagnosed;
 use crate::numbers::{not_negative, probability};
 use crate::outputs::{self, manifest};
 use crate::tables::{right, table};
-use crate::{Answer, Failure, records};
+use crate::{Failure, Reply, records};
 
 /// Replay a record through the watch that runs on a controller beside the filter.
 ///
@@ -48,7 +48,7 @@ pub(crate) struct WatchArguments {
 }
 
 /// Runs the command; returns the text for stdout.
-pub(crate) fn run(arguments: &WatchArguments) -> Result<Answer, Failure> {
+pub(crate) fn run(arguments: &WatchArguments) -> Result<Reply, Failure> {
     let inputs = [&*arguments.record, &*arguments.bench].into_iter();
     let inputs: Vec<&Path> = inputs.chain(arguments.map.path()).collect();
     outputs::check(&inputs, arguments.json.as_deref(), None)?;
@@ -61,7 +61,7 @@ pub(crate) fn run(arguments: &WatchArguments) -> Result<Answer, Failure> {
     };
     let replay = watch_record(&record, &bench, &options)
         .map_err(|source| NotDiagnosed::new(&arguments.record, &bench, source))?;
-    let mut answer = Answer::of(screen(&replay), text(&replay));
+    let mut answer = Reply::of(screen(&replay), text(&replay));
     if let Some(path) = &arguments.json {
         let manifest = manifest(MODEL_HASH, 0, &inputs)?;
         write_json(path, &WatchResult::new(manifest, replay))?;

@@ -11,8 +11,8 @@ use gyrocal_hypothesis::{HypothesisSet, ModelExtension, RateNoise, recurs};
 use gyrocal_record::{Bench, Record};
 
 use crate::error::DesignError;
+use gyrocal_answer::{AlternativeKind, Answer, Finding, SizeChoice};
 use gyrocal_diagnosis::missing_input;
-use gyrocal_diagnosis::result::{DiagnosisResult, Finding, SizeChoice};
 
 /// A named cause with its confidence set.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,7 +32,7 @@ pub struct NamedCause {
 impl NamedCause {
     /// The causes of a diagnosis that a run can be planned for.
     #[must_use]
-    pub fn all(diagnosis: &DiagnosisResult) -> Vec<Self> {
+    pub fn all(diagnosis: &Answer) -> Vec<Self> {
         let causes = diagnosis.causes();
         let plannable = causes.filter(|finding| Self::is_cause(&finding.effect));
         plannable.map(Self::of).collect()
@@ -47,9 +47,8 @@ impl NamedCause {
             effect: finding.effect.clone(),
             shape: shape.map(|parameter| parameter.estimate),
             rivals: finding
-                .alternatives
-                .iter()
-                .map(|other| (other.effect.clone(), other.log_likelihood_deficit))
+                .of_kind(AlternativeKind::NotExcluded)
+                .filter_map(|other| Some((other.effect.clone(), other.log_likelihood_deficit?)))
                 .collect(),
             turn_on_sigmas: row.map_or_else(Vec::new, |row| turn_on_sigmas(row, finding)),
         }
@@ -115,7 +114,7 @@ impl NamedCause {
 /// # Errors
 /// As [`NamedCause::fitted_of_unit`], and [`CalibrationError::UnlikeBenches`].
 pub fn fitted_to_records(
-    diagnosis: &DiagnosisResult,
+    diagnosis: &Answer,
     runs: &[Run<'_>],
     axes: &[GyroAxes],
     options: &Options,
@@ -125,7 +124,10 @@ pub fn fitted_to_records(
     let mut parts = Vec::with_capacity(runs.len());
     for (index, (run, one)) in runs.iter().zip(&diagnosis.records).enumerate() {
         let noise = NoiseModel {
-            accel_ratio: noise_of(&one.alone).accel_ratio,
+            accel_ratio: one
+                .alone
+                .as_ref()
+                .map_or([1.0; 3], |alone| noise_of(alone).accel_ratio),
             ..NoiseModel::default()
         };
         let axes = axes.get(index);
@@ -173,7 +175,7 @@ fn turn_on_sigmas(row: &Effect, finding: &Finding) -> Vec<f64> {
 
 /// Noise of the model of a diagnosis; the declared one of a result without it.
 #[must_use]
-pub fn noise_of(diagnosis: &DiagnosisResult) -> NoiseModel {
+pub fn noise_of(diagnosis: &Answer) -> NoiseModel {
     diagnosis
         .model_noise
         .map_or_else(NoiseModel::default, |noise| NoiseModel {

@@ -2,8 +2,8 @@
 
 use std::borrow::Cow;
 
+use gyrocal_answer::RecordSummary;
 use gyrocal_calibration::{FittedPlatform, Run, rows};
-use gyrocal_diagnosis::result::RecordSummary;
 use gyrocal_diagnosis::{record_summary, records_summary};
 use gyrocal_hypothesis::Rows;
 use gyrocal_record::{Bench, Record};

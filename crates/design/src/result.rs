@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use gyrocal_record::{Manifest, SetupProblem};
 use serde::{Deserialize, Serialize};
 
-use gyrocal_diagnosis::result::RecordSummary;
+use gyrocal_answer::RecordSummary;
 
 /// Version of the JSON contract of a plan.
 pub const SCHEMA_VERSION: u32 = 1;

@@ -32,7 +32,6 @@ use crate::power::powers;
 use crate::request;
 use crate::residual_test::{decorrelated, residual_test, whitened};
 use crate::residuals::residuals;
-use crate::result::{DiagnosisResult, FalseAlarmShares, Gain};
 use crate::series::Innovations;
 use crate::stage::Stage;
 use crate::validation::{CrossValidated, LaterPrediction, cross_validate, gain};
@@ -40,6 +39,7 @@ use answer::Evidence;
 pub use answer::{manifest, record_summary};
 pub use given::fit_effects;
 use gyro_noise::{gyro_noise_findings, over_declared};
+use gyrocal_answer::{Answer, FalseAlarmShares, Gain};
 pub use later::predict_later;
 use noise_audited_fit::{AuditedFit, noise_audited_fit};
 pub use options::DiagnoseOptions;
@@ -58,7 +58,7 @@ const MOST_CAUSES: usize = 2;
 /// A diagnosis: the answer, and the fits and series behind it.
 pub struct Diagnosis<'a> {
     /// The answer.
-    pub result: DiagnosisResult,
+    pub result: Answer,
     /// The record that was diagnosed: without what gross errors of the set-up spoilt.
     pub record: Cow<'a, Record>,
     /// The nominal model at its best fit.

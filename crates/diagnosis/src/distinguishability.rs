@@ -8,7 +8,9 @@ use gyrocal::{EFFECTS, Effect};
 use gyrocal_record::Record;
 
 use crate::prose;
-use crate::result::{Experiment, ExperimentKind, Finding, Indistinguishable, Relation};
+use gyrocal_answer::{
+    Alternative, AlternativeKind, Experiment, ExperimentKind, Finding, Separation, SetUps,
+};
 
 fn row(id: &str) -> Option<&'static Effect> {
     EFFECTS.iter().find(|row| row.id == id)
@@ -20,50 +22,45 @@ fn needs_key(id: &str) -> bool {
     needs.any(|need| matches!(need, Need::Key(_)))
 }
 
-/// Groups of effects around a finding that the record does not distinguish: its exact equivalents,
-/// the other members of its confidence set, and near twins outside of the search that was made.
-/// `searched` holds the effects that were tested; `field_is_known` says whether the bench file gives
-/// the Earth's magnetic field.
-pub(crate) fn indistinguishable(
-    finding: &Finding,
-    searched: &[&str],
-    field_is_known: bool,
-) -> Vec<Indistinguishable> {
-    let mut groups = Vec::new();
-    let named = finding.effect.as_str();
-    if !finding.equivalents.is_empty() {
-        let others = finding.equivalents.iter().map(|e| e.effect.clone());
-        groups.push(exact(named, others.collect()));
-    }
-    if !finding.alternatives.is_empty() {
-        let others = finding.alternatives.iter().map(|a| a.effect.clone());
-        groups.push(group(
-            Relation::ConfidenceSet,
-            prose::why_not_distinguished(finding.coverage),
-            members(named, others.collect()),
-            Vec::new(),
-        ));
-    }
+/// What would tell a finding from its exact equivalents, from the other members of its confidence set, and from
+/// near twins outside of the search that was made, which become its alternatives. `searched` holds the effects that
+/// were tested; `field_is_known` says whether the bench file gives the Earth's magnetic field.
+pub(crate) fn separate(finding: &mut Finding, searched: &[&str], field_is_known: bool) {
     let twins = untested_twins(finding, searched);
-    if !twins.is_empty() {
-        let testable = twins
-            .iter()
-            .filter(|id| field_is_known || !needs_key(id))
-            .cloned()
-            .collect();
-        groups.push(group(
-            Relation::NearTwins,
-            prose::near_twins(),
-            members(named, twins),
-            testable,
-        ));
-    }
-    groups
+    let testable = twins.iter().filter(|id| field_is_known || !needs_key(id));
+    let testable: Vec<String> = testable.map(|id| (*id).to_owned()).collect();
+    let twins = twins.into_iter().map(|id| Alternative {
+        effect: id.to_owned(),
+        kind: AlternativeKind::NotSearched,
+        log_likelihood_deficit: None,
+        parameters: Vec::new(),
+    });
+    finding.alternatives.extend(twins);
+    let kinds = [
+        AlternativeKind::ExactEquivalent,
+        AlternativeKind::NotExcluded,
+        AlternativeKind::NotSearched,
+    ];
+    let present = kinds
+        .into_iter()
+        .filter(|kind| finding.of_kind(*kind).next().is_some());
+    finding.separations = present
+        .map(|kind| match kind {
+            AlternativeKind::ExactEquivalent => exact(&finding.effect),
+            AlternativeKind::NotSearched => {
+                separation(finding, kind, prose::near_twins(), testable.clone())
+            }
+            _ => {
+                let why = prose::why_not_distinguished(finding.coverage);
+                separation(finding, kind, why, Vec::new())
+            }
+        })
+        .collect();
 }
 
 /// Set-ups that fit a record without declared angles as well as the declared one: `docs/setup-checks.md` has
 /// the symmetry.
-pub(crate) fn set_ups_without_angles() -> Indistinguishable {
+pub(crate) fn set_ups_without_angles() -> SetUps {
     let experiments = vec![Experiment {
         kind: ExperimentKind::MeasureAttitude,
         what: None,
@@ -74,11 +71,9 @@ pub(crate) fn set_ups_without_angles() -> Indistinguishable {
         "two axes negated",
         "mirrored axes at the opposite latitude",
     ];
-    Indistinguishable {
+    SetUps {
         members: members.map(str::to_owned).to_vec(),
-        relation: Relation::SetUps,
         why: prose::SET_UPS_WITHOUT_ANGLES.to_owned(),
-        testable: Vec::new(),
         would_separate: prose::would_distinguish(&[], &experiments),
         experiments,
     }
@@ -111,17 +106,28 @@ fn about_mean(values: &[f64]) -> Vec<f64> {
 }
 
 /// Says of sets with effects of temperature and of time that the two went together in the record.
-pub(crate) fn tell_together(groups: &mut [Indistinguishable], correlation: f64) {
+pub(crate) fn tell_together(findings: &mut [Finding], correlation: f64) {
     if correlation.abs() < TOGETHER {
         return;
     }
-    let of_kind = |group: &Indistinguishable, kinds: &[EffectKind]| {
-        let mut rows = group.members.iter().filter_map(|id| row(id));
-        rows.any(|row| kinds.contains(&row.kind))
-    };
-    for group in groups {
-        if of_kind(group, &[EffectKind::Regressor]) && of_kind(group, &OF_TIME) {
-            group.why += &prose::time_is_temperature(correlation);
+    for finding in findings {
+        let named = row(&finding.effect).into_iter();
+        let told = |kind| {
+            let others = finding.of_kind(kind).filter_map(|other| row(&other.effect));
+            let members: Vec<&Effect> = named.clone().chain(others).collect();
+            let of_kind =
+                |kinds: &[EffectKind]| members.iter().any(|row| kinds.contains(&row.kind));
+            of_kind(&[EffectKind::Regressor]) && of_kind(&OF_TIME)
+        };
+        let told: Vec<bool> = finding
+            .separations
+            .iter()
+            .map(|one| told(one.from))
+            .collect();
+        for (separation, told) in finding.separations.iter_mut().zip(told) {
+            if told {
+                separation.why += &prose::time_is_temperature(correlation);
+            }
         }
     }
 }
@@ -136,45 +142,40 @@ const OF_TIME: [EffectKind; 6] = [
     EffectKind::RandomWalk,
 ];
 
-fn group(
-    relation: Relation,
+fn separation(
+    finding: &Finding,
+    from: AlternativeKind,
     why: String,
-    members: Vec<String>,
     testable: Vec<String>,
-) -> Indistinguishable {
-    let experiments = experiments(&members);
-    Indistinguishable {
-        relation,
+) -> Separation {
+    let others = finding.of_kind(from).map(|other| &*other.effect);
+    let experiments = experiments(core::iter::once(&*finding.effect).chain(others));
+    Separation {
+        from,
         why,
-        would_separate: prose::would_distinguish(&testable, &experiments),
+        words: prose::would_distinguish(&testable, &experiments),
         testable,
         experiments,
-        members,
     }
 }
 
-fn members(named: &str, others: Vec<String>) -> Vec<String> {
-    core::iter::once(named.to_owned()).chain(others).collect()
-}
-
-fn exact(named: &str, others: Vec<String>) -> Indistinguishable {
+fn exact(named: &str) -> Separation {
     let equivalence = row(named).map(|row| row.equivalence);
     let experiments = vec![Experiment {
         kind: ExperimentKind::Other,
         what: equivalence.map(|found| found.experiment.to_owned()),
     }];
-    Indistinguishable {
-        members: members(named, others),
-        relation: Relation::ExactEquivalents,
+    Separation {
+        from: AlternativeKind::ExactEquivalent,
         why: equivalence.map_or("", |found| found.reason).to_owned(),
         testable: Vec::new(),
-        would_separate: prose::would_distinguish(&[], &experiments),
+        words: prose::would_distinguish(&[], &experiments),
         experiments,
     }
 }
 
 /// Near twins of the catalogue that were not tested against the finding.
-fn untested_twins(finding: &Finding, searched: &[&str]) -> Vec<String> {
+fn untested_twins(finding: &Finding, searched: &[&str]) -> Vec<&'static str> {
     let Some(named) = row(&finding.effect) else {
         return Vec::new();
     };
@@ -185,13 +186,13 @@ fn untested_twins(finding: &Finding, searched: &[&str]) -> Vec<String> {
         .filter(|twin| !twin.default_search && twin.has_term())
         .filter(|twin| matches!(twin.enters, Enters::Rates(_)))
         .filter(|twin| !searched.contains(&twin.id))
-        .map(|twin| twin.id.to_owned())
+        .map(|twin| twin.id)
         .collect()
 }
 
 /// Experiments that change one member otherwise than another.
-fn experiments(members: &[String]) -> Vec<Experiment> {
-    let rows = members.iter().filter_map(|id| row(id));
+fn experiments<'i>(members: impl Iterator<Item = &'i str>) -> Vec<Experiment> {
+    let rows = members.filter_map(row);
     let mut all: Vec<effect::Experiment> = rows.flat_map(|row| row.separated_by).copied().collect();
     all.sort_unstable();
     all.dedup();
@@ -222,37 +223,46 @@ fn of_catalogue(experiment: effect::Experiment) -> Experiment {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::result::{Alternative, Equivalent, FindingKind};
+    use gyrocal_answer::FindingKind;
 
-    fn finding(effect: &str, alternatives: &[&str], equivalents: &[&str]) -> Finding {
-        let alternatives: Vec<Alternative> = alternatives
-            .iter()
-            .map(|effect| Alternative {
+    /// A finding with other members of its set and equivalents, told apart from what was not searched.
+    fn separated(
+        effect: &str,
+        (set, equivalents): (&[&str], &[&str]),
+        searched: &[&str],
+        field_is_known: bool,
+    ) -> Finding {
+        let of = |effects: &[&str], kind: AlternativeKind| -> Vec<Alternative> {
+            let all = effects.iter().map(|effect| Alternative {
                 effect: (*effect).to_owned(),
-                log_likelihood_deficit: 1.0,
-            })
-            .collect();
-        let equivalents = equivalents.iter().map(|effect| Equivalent {
-            effect: (*effect).to_owned(),
-            parameters: Vec::new(),
-        });
-        Finding {
+                kind,
+                log_likelihood_deficit: Some(1.0),
+                parameters: Vec::new(),
+            });
+            all.collect()
+        };
+        let mut alternatives = of(equivalents, AlternativeKind::ExactEquivalent);
+        alternatives.extend(of(set, AlternativeKind::NotExcluded));
+        let mut finding = Finding {
             effect: effect.to_owned(),
             name: String::new(),
             kind: FindingKind::Cause,
             parameters: Vec::new(),
             z: 8.0,
-            p_value: 1e-12,
+            p_value: Some(1e-12),
             coverage: Some(0.95),
-            rivals: alternatives.clone(),
             alternatives,
+            separations: Vec::new(),
             none_of_these: None,
             none_of_these_log_likelihood_ratio: None,
             by_record: None,
-            equivalents: equivalents.collect(),
+            in_record: None,
+            formula: None,
             gain_nats: Some(20.0),
             accepted: Some(true),
-        }
+        };
+        separate(&mut finding, searched, field_is_known);
+        finding
     }
 
     #[test]
@@ -268,9 +278,11 @@ mod tests {
         let turning = correlation(record(|t| 20.0 + (0.3 * t).sin()));
         assert_eq!(correlation(record(|_| 20.0)), None);
         let told = |effect: &str, other: &str, correlation: Option<f64>| {
-            let mut groups = indistinguishable(&finding(effect, &[other], &[]), &[], false);
-            tell_together(&mut groups, correlation.unwrap_or(0.0));
-            groups[0].why.contains("time and temperature go together")
+            let mut findings = [separated(effect, (&[other], &[]), &[], false)];
+            tell_together(&mut findings, correlation.unwrap_or(0.0));
+            findings[0].separations[0]
+                .why
+                .contains("time and temperature go together")
         };
         assert!(told("gyro_x.temperature", "gyro_x.ramp", rising));
         assert!(told("gyro_x.ramp", "gyro_x.temperature", rising));
@@ -313,53 +325,59 @@ mod tests {
 
     #[test]
     fn each_group_has_its_experiment() {
-        let latitude = finding("site.latitude", &[], &["clock.rate"]);
-        let latitude = indistinguishable(&latitude, &[], false);
-        assert_eq!(latitude.len(), 1);
-        assert_eq!(latitude[0].members, ["site.latitude", "clock.rate"]);
-        assert_eq!(latitude[0].relation, Relation::ExactEquivalents);
-        assert!(latitude[0].would_separate.contains("astronomic latitude"));
+        let latitude = separated("site.latitude", (&[], &["clock.rate"]), &[], false);
+        assert_eq!(latitude.equivalents().collect::<Vec<_>>(), ["clock.rate"]);
+        let [exact] = &latitude.separations[..] else {
+            panic!("{:?}", latitude.separations);
+        };
+        assert_eq!(exact.from, AlternativeKind::ExactEquivalent);
+        assert!(exact.words.contains("astronomic latitude"));
 
-        let cross = finding("gyro_x.g_y", &["gyro_x.warmup"], &[]);
-        let cross = indistinguishable(&cross, &[], false);
-        assert_eq!(cross[0].members, ["gyro_x.g_y", "gyro_x.warmup"]);
-        assert!(cross[0].why.contains("coverage of 95 %"));
-        let kinds: Vec<ExperimentKind> = cross[0].experiments.iter().map(|e| e.kind).collect();
+        let cross = separated("gyro_x.g_y", (&["gyro_x.warmup"], &[]), &[], false);
+        let [set, twins] = &cross.separations[..] else {
+            panic!("{:?}", cross.separations);
+        };
+        assert!(set.why.contains("coverage of 95 %"));
+        let kinds: Vec<ExperimentKind> = set.experiments.iter().map(|e| e.kind).collect();
         assert_eq!(
             kinds,
             [ExperimentKind::OtherAttitude, ExperimentKind::StartLate]
         );
-        assert!(cross[0].would_separate.contains("another initial attitude"));
-        assert!(cross[0].would_separate.contains("long after switching on"));
+        assert!(set.words.contains("another initial attitude"));
+        assert!(set.words.contains("long after switching on"));
         // Axis misalignment and the field are not in the default search.
-        assert_eq!(cross[1].relation, Relation::NearTwins);
-        assert!(cross[1].members.iter().any(|id| id == "gyro_x.magnetic"));
-        assert_eq!(cross[1].testable, ["gyro_xy.axis_misalignment"]);
+        assert_eq!(twins.from, AlternativeKind::NotSearched);
+        let mut not_searched = cross.of_kind(AlternativeKind::NotSearched);
+        assert!(not_searched.any(|other| other.effect == "gyro_x.magnetic"));
+        assert_eq!(twins.testable, ["gyro_xy.axis_misalignment"]);
         assert!(
-            cross[1]
-                .would_separate
+            twins
+                .words
                 .starts_with("--effects gyro_xy.axis_misalignment tests")
         );
-        let with_field = indistinguishable(&finding("gyro_x.g_y", &[], &[]), &[], true);
-        assert!(
-            with_field[0]
-                .testable
-                .iter()
-                .any(|id| id == "gyro_x.magnetic")
-        );
+        let with_field = separated("gyro_x.g_y", (&[], &[]), &[], true);
+        let mut testable = with_field.separations[0].testable.iter();
+        assert!(testable.any(|id| id == "gyro_x.magnetic"));
     }
 
     #[test]
     fn effects_that_were_tested_and_are_no_alternatives_are_distinguished() {
         let both = ["gyro_x.magnetic", "gyro_xy.axis_misalignment"];
-        assert!(indistinguishable(&finding("gyro_x.g_y", &[], &[]), &both, true).is_empty());
-        assert!(indistinguishable(&finding("accel_x.noise", &[], &[]), &[], false).is_empty());
+        let tested = separated("gyro_x.g_y", (&[], &[]), &both, true);
+        assert!(tested.separations.is_empty() && tested.alternatives.is_empty());
+        let noise = separated("accel_x.noise", (&[], &[]), &[], false);
+        assert!(noise.separations.is_empty());
     }
 
     #[test]
     fn every_effect_of_the_search_has_an_experiment() {
         for effect in EFFECTS.iter().filter(|e| e.has_term() && !e.is_nominal) {
-            assert_ne!(experiments(&[effect.id.to_owned()]), [], "{}", effect.id);
+            assert_ne!(
+                experiments(core::iter::once(effect.id)),
+                [],
+                "{}",
+                effect.id
+            );
         }
     }
 }

@@ -1,7 +1,7 @@
 use gyrocal_calibration::CalibrationError;
 use gyrocal_statistics::StatisticsError;
 
-use crate::result::DiagnosisResult;
+use gyrocal_answer::Answer;
 
 /// Errors of this crate.
 #[derive(Debug, thiserror::Error)]
@@ -14,7 +14,7 @@ pub enum DiagnosisError {
     #[error("the set-up is wrong: {}", problems(.result))]
     Setup {
         /// The answer: its verdict is `setup`, and nothing was fitted.
-        result: Box<DiagnosisResult>,
+        result: Box<Answer>,
     },
     /// Two series that belong together differ in length.
     #[error("{found} rows of {what}, expected {expected}, as many as the record has")]
@@ -117,7 +117,7 @@ pub enum DiagnosisError {
 }
 
 /// The problems of the set-up, in words.
-fn problems(result: &DiagnosisResult) -> String {
+fn problems(result: &Answer) -> String {
     let texts: Vec<String> = result.setup.iter().map(|problem| problem.text()).collect();
     texts.join(" ")
 }

@@ -12,7 +12,7 @@ use gyrocal_hypothesis::{
     WALK_SET_DEVIANCE,
 };
 
-use crate::result::FalseAlarmShares;
+use gyrocal_answer::FalseAlarmShares;
 
 /// Share of α for the noise audit of the accelerometers.
 pub const NOISE_AUDIT_SHARE: f64 = 0.12;

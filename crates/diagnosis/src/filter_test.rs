@@ -5,7 +5,7 @@ use gyrocal_record::{Bench, Record};
 use gyrocal_statistics::{chi_square_z, two_sided_p};
 
 use crate::error_budget::FILTER_TEST_ALPHA;
-use crate::result::FilterTest;
+use gyrocal_answer::FilterTest;
 
 /// The effect that is reported of a filter whose integration rule is too coarse.
 pub const FILTER_EFFECT: &str = "filter.discretisation";

@@ -3,7 +3,7 @@
 //! # What it is
 //!
 //! [`diagnose`] takes a record and its bench description, and returns a [`Diagnosis`]: the answer
-//! ([`DiagnosisResult`], plain data that is also the JSON contract) with the fits behind it.
+//! ([`gyrocal_answer::Answer`], plain data that is also the JSON contract) with the fits behind it.
 //!
 //! 0. *Set-up* ([`gyrocal_setup`]): gross errors of record and bench description, before any fit. What
 //!    can be mended is left out; one that leaves nothing sound ends the diagnosis.
@@ -44,7 +44,8 @@
 //! # Example
 //!
 //! ```no_run
-//! use gyrocal_diagnosis::{DiagnoseOptions, Verdict, diagnose};
+//! use gyrocal_answer::Verdict;
+//! use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
 //! use gyrocal_record::{Bench, Record};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -53,7 +54,7 @@
 //! let diagnosis = diagnose(&record, &bench, &DiagnoseOptions::default())?;
 //! if diagnosis.result.verdict != Verdict::Clean {
 //!     for finding in &diagnosis.result.findings {
-//!         println!("{}: p = {:.1e}", finding.effect, finding.p_value);
+//!         println!("{}: {:.1} sigma", finding.effect, finding.z);
 //!     }
 //! }
 //! # Ok(())
@@ -62,11 +63,11 @@
 //!
 //! # Features
 //!
-//! - `schema`: the JSON Schema of the results.
+//! - `schema`: the JSON Schemas of results.
 //!
 //! # What it does not do
 //!
-//! It reads no records and prints nothing; [`result::read`] reads a written result. It tests effects
+//! It reads no records and prints nothing; [`gyrocal_answer::read`] reads a written answer. It tests effects
 //! of the catalogue, sinusoids and functions of specific force, on a static base only.
 
 mod calibration_report;
@@ -86,7 +87,6 @@ pub mod prose;
 mod request;
 mod residual_test;
 mod residuals;
-pub mod result;
 mod series;
 pub mod set_coverage;
 mod stage;
@@ -113,7 +113,7 @@ pub use noise::{
 };
 pub use plot_data::{ChannelCorrelation, ChannelSpectrum, ModelVersion, OpenLoopSimulation};
 pub use request::{missing_input, selection};
-pub use result::{DiagnosisResult, Verdict};
+
 pub use series::Innovations;
 pub use stage::Stage;
 #[cfg(feature = "schema")]

@@ -7,7 +7,7 @@ use gyrocal_hypothesis::{Ranked, sigmas};
 use gyrocal_record::Record;
 use gyrocal_statistics::normal_probability;
 
-use crate::result::Power;
+use gyrocal_answer::Power;
 
 /// Records as long as a sidereal day \[s\] show effects of typical size: their verdict needs no
 /// caveat.

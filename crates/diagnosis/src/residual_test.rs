@@ -7,7 +7,7 @@ use gyrocal_statistics::{autocorrelation, p_of_least, periodogram, strongest_lin
 
 use crate::error_budget::RESIDUAL_TESTS;
 use crate::prose::residual_description;
-use crate::result::{
+use gyrocal_answer::{
     ResidualCorrelation, ResidualLine, ResidualTest, ResidualVerdict, UnmodelledPattern,
     UnmodelledTerm,
 };
@@ -67,11 +67,10 @@ pub(crate) fn residual_test(
     let tested = of_line.into_iter().chain(of_correlation);
     let count = tested.clone().count();
     let least = tested.fold(1.0, f64::min);
+    let of_tests = (count > 0).then(|| p_of_least(least, count as f64));
     let unmodelled: Vec<UnmodelledTerm> = unmodelled.iter().map(term).collect();
-    let p_value = unmodelled
-        .iter()
-        .map(|term| term.p_value)
-        .fold(p_of_least(least, count as f64), f64::min);
+    let of_terms = unmodelled.iter().map(|term| term.p_value);
+    let p_value = of_terms.chain(of_tests).reduce(f64::min);
     let verdict = if p_of_least(least, RESIDUAL_TESTS) < alpha || !unmodelled.is_empty() {
         ResidualVerdict::Unexplained
     } else if line.is_none() || correlation.is_none() {
@@ -85,6 +84,7 @@ pub(crate) fn residual_test(
         description: String::new(),
         line,
         correlation,
+        outputs: Vec::new(),
         unmodelled,
     };
     test.description = residual_description(&test);
@@ -109,7 +109,7 @@ fn largest_line(time_s: &[f64], whitened: &[[f64; 3]], alpha: f64) -> Option<Res
 }
 
 fn term(found: &Unmodelled) -> UnmodelledTerm {
-    let (pattern, period_h, force_axis) = match found.pattern {
+    let (pattern, period_h, depends_on) = match found.pattern {
         Pattern::Line { period_h } => (UnmodelledPattern::Line, Some(period_h), None),
         Pattern::Curve { covariate, .. } => {
             let axis = AXES[covariate].to_owned();
@@ -120,7 +120,7 @@ fn term(found: &Unmodelled) -> UnmodelledTerm {
         channel: found.describes.id.to_owned(),
         pattern,
         period_h,
-        force_axis,
+        depends_on,
         size: found.size,
         unit: found.describes.unit.to_owned(),
         p_value: found.ln_probability.exp(),

@@ -8,8 +8,8 @@ use gyrocal_statistics::{
     SpectralLine, StatisticsError, autocorrelation, binned_means, nis, periodogram, rms_of_present,
 };
 
-use crate::result::{Against, Autocorrelation, Line, Nis, Residuals};
 use crate::series::Innovations;
+use gyrocal_answer::{Against, Autocorrelation, Line, Nis, Residuals};
 
 /// Lags of the autocorrelation.
 const LAGS: usize = 20;

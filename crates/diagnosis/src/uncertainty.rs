@@ -11,9 +11,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::diagnose::Diagnosis;
 use crate::error::DiagnosisError;
-use crate::result::{DiagnosisResult, SetMember};
 use contribution::finite;
 pub use contribution::{ContributionLine, EvaluationType};
+use gyrocal_answer::{Answer, SetMember};
 
 /// Version of the JSON contract of an uncertainty budget; it rises when a key changes its meaning or goes
 /// away.
@@ -254,7 +254,7 @@ pub fn record_uncertainty(
     Ok((found, budget))
 }
 
-fn members(result: &DiagnosisResult) -> &[SetMember] {
+fn members(result: &Answer) -> &[SetMember] {
     result
         .coefficients
         .as_ref()

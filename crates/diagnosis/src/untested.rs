@@ -6,7 +6,7 @@ use gyrocal_hypothesis::{Ranked, Unavailable};
 
 use crate::noise::NoiseAudit;
 use crate::prose;
-use crate::result::{NotTested, NotTestedReason};
+use gyrocal_answer::{NotTested, NotTestedReason};
 
 /// State of the tests that were made.
 pub(crate) struct Tests<'t> {

@@ -15,7 +15,7 @@ pub(crate) use cross_validation::{CrossValidated, KeepDecision, cross_validate};
 pub(crate) use later_record::predict;
 pub use later_record::{AttitudeErrors, LaterPrediction};
 
-use crate::result::{CoefficientShift, FreeRun, Gain, Prediction};
+use gyrocal_answer::{CoefficientShift, FreeRun, Gain, Prediction};
 
 /// Gain of the second model over the first, the nominal one, on the record both were fitted to with
 /// the same noise, of which `accel_noise_g` is declared. `scores` are the log scores of its blocks
@@ -38,52 +38,50 @@ pub(crate) fn gain(
         effects,
         prediction,
         cross_validated_log_score_nats: block_log_score_nats.iter().sum(),
-        block_log_score_nats,
-        free_run_rms_g: FreeRun {
+        block_log_score_nats: block_log_score_nats.into_iter().map(Some).collect(),
+        free_run_rms_g: Some(FreeRun {
             before: rms(record, noise, &nominal.free_run_g()?),
             after: rms(record, noise, &extended.free_run_g()?),
             noise: accel_noise_g * (squares.sum::<f64>() / 3.0).sqrt(),
-        },
+        }),
         coefficient_shift: shifts(nominal, extended),
         validation: None,
     })
 }
 
-/// Changes of the coefficients. The nominal model is fitted with the white noise of the extended one:
-/// noise that an effect had raised says nothing of the shift.
+/// Changes of the coefficients from the nominal estimates, over the standard deviations of these.
 fn shifts(nominal: &FittedPlatform<'_>, extended: &FittedPlatform<'_>) -> Vec<CoefficientShift> {
     let has_walks = !extended.rate_noise().walking().is_empty();
-    // A record that the nominal model is far from cannot always be fitted with the noise that is left.
-    let refitted = extended.refitted(nominal.extension()).ok();
-    let same_noise = refitted.as_ref().unwrap_or(nominal);
-    let from = if has_walks { nominal } else { same_noise };
-    let covariances = [same_noise.covariance(), extended.covariance()];
-    (0..DRIFT.len())
-        .map(|index| {
-            let shift = extended.values()[index] - from.values()[index];
-            let [before, after] = covariances.map(|all| all[(index, index)]);
-            // Beside walks the nominal estimate is no efficient one, and errs by itself.
-            let variance = if has_walks { after } else { after - before };
-            coefficient_shift(index, shift, variance, before)
-        })
-        .collect()
+    let each = DRIFT.iter().enumerate();
+    each.map(|(index, element)| {
+        let shift = extended.values()[index] - nominal.values()[index];
+        let variance = |fit: &FittedPlatform<'_>| fit.covariance()[(index, index)];
+        let (before, after) = (variance(nominal), variance(extended));
+        // Extended = nominal + shift, the two independent (Hausman, Econometrica 46, 1251, 1978). Beside walks
+        // the nominal estimate is no efficient one, and errs by itself.
+        let variance = if has_walks { after } else { after - before };
+        coefficient_shift(element.id, element.unit, shift, (variance.abs(), before))
+    })
+    .collect()
 }
 
-/// Change of a coefficient with its standard deviation: extended = nominal + shift, the two
-/// independent (Hausman, Econometrica 46, 1251, 1978).
-fn coefficient_shift(index: usize, shift: f64, variance: f64, before: f64) -> CoefficientShift {
-    let element = &DRIFT[index];
-    // An extension that does not touch a coefficient changes its variance by rounding only.
-    let sigma = variance.max(0.0).sqrt();
+/// Change of a coefficient; `before` is the variance of its nominal estimate.
+fn coefficient_shift(
+    id: &str,
+    unit: &str,
+    shift: f64,
+    (variance, before): (f64, f64),
+) -> CoefficientShift {
+    let (sigma, claimed) = (variance.sqrt(), before.sqrt());
     let interval = [-1.0, 1.0].map(|side| shift + side * NORMAL_97_5 * sigma);
     CoefficientShift {
-        coefficient: element.id.to_owned(),
+        coefficient: id.to_owned(),
         shift,
         sigma,
         interval,
-        in_sigmas: shift / before.sqrt(),
-        in_sigmas_interval: interval.map(|end| end / before.sqrt()),
-        unit: element.unit.to_owned(),
+        in_sigmas: shift / claimed,
+        in_sigmas_interval: interval.map(|end| end / claimed),
+        unit: unit.to_owned(),
     }
 }
 

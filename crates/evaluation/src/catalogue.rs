@@ -3,7 +3,7 @@
 use gyrocal::effect::Enters;
 use gyrocal::generated::catalogue::{OUTPUTS, PARAMETERS, RATES};
 use gyrocal::{EFFECTS, Effect};
-use gyrocal_diagnosis::result::Finding;
+use gyrocal_answer::Finding;
 
 /// The effect of an id; `None` for an id that the catalogue does not have.
 #[must_use]

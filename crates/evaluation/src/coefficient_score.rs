@@ -1,6 +1,6 @@
 //! Comparison of the estimated drift coefficients of one record with the true ones.
 
-use gyrocal_diagnosis::result::{CoefficientEstimate, Coefficients};
+use gyrocal_answer::{CoefficientEstimate, Coefficients};
 use gyrocal_statistics::NORMAL_97_5;
 use serde::{Deserialize, Serialize};
 

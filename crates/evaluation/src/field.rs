@@ -13,6 +13,7 @@ mod plants;
 mod records;
 mod right;
 
+use gyrocal_answer::Answer;
 use gyrocal_calibration::{Options, Run};
 use gyrocal_diagnosis::{DiagnoseOptions, Gate, RecordToDiagnose, diagnose, diagnose_together};
 use gyrocal_plant::LoadedPlant;
@@ -33,7 +34,12 @@ use right::{Right, VISIBLE};
 const KEYS: u64 = 100_000_000;
 const KINDS: u64 = 400_000_000;
 const PLANTS: u64 = 500_000_000;
+const SHORT: u64 = 600_000_000;
 const APART: u64 = 1_000_000;
+
+/// Records of a population, and of the one of short records.
+const RECORDS: u64 = 20;
+const SHORT_RECORDS: u64 = 2_600;
 
 /// A family of records.
 pub struct FieldPopulation<'a> {
@@ -41,6 +47,8 @@ pub struct FieldPopulation<'a> {
     pub name: String,
     /// The first of its seeds: no other population has one of the million that begins here.
     pub first_seed: u64,
+    /// Number of its records.
+    pub records: u64,
     /// The answer that is right for its records, in words.
     pub right: String,
     /// Makes the record of a seed, diagnoses it and judges the answer. A diagnosis that fails is an outcome; a record
@@ -48,8 +56,9 @@ pub struct FieldPopulation<'a> {
     pub job: Job<'a>,
 }
 
-/// The outcome of a seed.
-type Job<'a> = Box<dyn Fn(u64) -> Result<FieldOutcome, EvaluationError> + Send + Sync + 'a>;
+/// The outcome of a seed, and the whole answer; `None` if the diagnosis failed.
+type Job<'a> = Box<dyn Fn(u64) -> Result<Judged, EvaluationError> + Send + Sync + 'a>;
+type Judged = (FieldOutcome, Option<Answer>);
 
 /// The judged diagnosis of one record.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -70,6 +79,7 @@ impl FieldPopulation<'static> {
         let of = |key: WrongKey, first_seed| Self {
             name: key.name(),
             first_seed,
+            records: RECORDS,
             right: key.right.words(),
             job: Box::new(move |seed| {
                 let both = key.record(seed)?;
@@ -80,10 +90,14 @@ impl FieldPopulation<'static> {
                     Err(_) => Told::set_up(right::BENCH),
                 };
                 let is_faint = strength.is_some_and(|strength| strength < VISIBLE);
-                Ok(FieldOutcome {
-                    strength,
-                    ..outcome(key.right, None, is_faint, told)
-                })
+                let (outcome, answer) = outcome(key.right, None, is_faint, told);
+                Ok((
+                    FieldOutcome {
+                        strength,
+                        ..outcome
+                    },
+                    answer,
+                ))
             }),
         };
         let keys = WrongKey::all().into_iter().zip(seeds(KEYS));
@@ -96,6 +110,7 @@ impl FieldPopulation<'static> {
         let of = |(kind, first_seed): (&'static FieldKind, u64)| Self {
             name: kind.name.to_owned(),
             first_seed,
+            records: RECORDS,
             right: kind.right.words(),
             job: Box::new(|seed| {
                 let made = (kind.make)(seed)?;
@@ -103,6 +118,21 @@ impl FieldPopulation<'static> {
             }),
         };
         FieldKind::ALL.iter().zip(seeds(KINDS)).map(of).collect()
+    }
+
+    /// Records of few rows, with gaps and missing values, as declared or with a wrong number.
+    #[must_use]
+    pub fn short() -> Self {
+        Self {
+            name: "2 to 400 rows".to_owned(),
+            first_seed: SHORT,
+            records: SHORT_RECORDS,
+            right: Right::NOTHING.words(),
+            job: Box::new(|seed| {
+                let made = records::short(seed)?;
+                Ok(outcome(&Right::NOTHING, None, false, told(&made.records)))
+            }),
+        }
     }
 }
 
@@ -113,6 +143,7 @@ impl<'a> FieldPopulation<'a> {
         let of = |(kind, first_seed): (&'static PlantKind, u64)| Self {
             name: kind.name.to_owned(),
             first_seed,
+            records: RECORDS,
             right: kind.right.words(),
             job: Box::new(|seed| {
                 let told = Told::of_plant(kind.diagnosed(servo, seed));
@@ -128,12 +159,13 @@ fn seeds(first: u64) -> impl Iterator<Item = u64> {
     (0..).map(move |place| first + APART * place)
 }
 
-fn outcome(right: &Right, axis: Option<usize>, faint: bool, told: Told) -> FieldOutcome {
-    FieldOutcome {
+fn outcome(right: &Right, axis: Option<usize>, faint: bool, told: Told) -> Judged {
+    let outcome = FieldOutcome {
         judgement: judge(right, axis, faint, &told),
         told: told.words(),
         strength: None,
-    }
+    };
+    (outcome, told.answer)
 }
 
 /// The diagnosis of a record, or of several together.

@@ -33,7 +33,11 @@ pub(crate) fn sets_in_noise(
     among: impl Fn(&Effect) -> bool,
 ) -> Result<Vec<Vec<&'static str>>, EvaluationError> {
     let options = SearchOptions {
-        false_alarm_probability: found.result.false_alarm_shares.search,
+        false_alarm_probability: found
+            .result
+            .false_alarm_shares
+            .as_ref()
+            .map_or(0.0, |all| all.search),
         ..SearchOptions::default()
     };
     let mut selection = selection(&simulation.record, &simulation.bench, &[]);

@@ -1,9 +1,11 @@
 //! Comparison of the diagnosis of one record with the effects injected into it.
 
 use gyrocal::effect::Role;
+use gyrocal_answer::{
+    AlternativeKind, Answer, Finding, FindingKind, Parameter, RankedEffect, Verdict,
+};
 use gyrocal_calibration::NoiseModel;
-use gyrocal_diagnosis::result::{DiagnosisResult, Finding, FindingKind, Parameter, RankedEffect};
-use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, Verdict, diagnose};
+use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, diagnose};
 use gyrocal_statistics::NORMAL_97_5;
 use gyrocal_truth::{Scenario, Simulation};
 
@@ -179,11 +181,12 @@ fn baseline_score(
 }
 
 /// The findings of a diagnosis, without the comparison with injected effects.
-pub(crate) fn findings_score(found: &DiagnosisResult) -> RecordScore {
+pub(crate) fn findings_score(found: &Answer) -> RecordScore {
     RecordScore {
         verdict: match found.verdict {
             Verdict::EffectsFound => "effects-found",
             Verdict::Unexplained => "unexplained",
+            Verdict::NotSettled => "not-settled",
             _ => "clean",
         }
         .to_owned(),
@@ -230,7 +233,7 @@ fn finding_score(finding: &Finding) -> FindingScore {
     FindingScore {
         effect: finding.effect.clone(),
         alternatives: finding.set().skip(1).map(str::to_owned).collect(),
-        lacks_equivalents: has_equivalents && finding.equivalents.is_empty(),
+        lacks_equivalents: has_equivalents && finding.equivalents().next().is_none(),
         none_of_these: finding.none_of_these,
         gain_nats: finding.gain_nats,
         accepted: finding.accepted,
@@ -238,7 +241,7 @@ fn finding_score(finding: &Finding) -> FindingScore {
 }
 
 fn injected_score(
-    found: &DiagnosisResult,
+    found: &Answer,
     truth: &Truth<'_>,
     first_cosine: f64,
     duration_s: f64,
@@ -250,7 +253,7 @@ fn injected_score(
         if finding.effect == id {
             return Some(finding.parameters.as_slice());
         }
-        let mut equivalents = finding.equivalents.iter();
+        let mut equivalents = finding.of_kind(AlternativeKind::ExactEquivalent);
         let listed = equivalents.find(|other| other.effect == id);
         listed.map(|other| other.parameters.as_slice())
     });

@@ -2,17 +2,17 @@
 //! often a physical cause that is not there and nothing else.
 
 use gyrocal_evaluation::{FieldOutcome, FieldPopulation, Judgement, Statistic};
+use gyrocal_plant::LoadedPlant;
 use gyrocal_statistics::median;
+use serde::{Deserialize, Serialize};
 
+use crate::answers::Checked;
 use crate::any_plant::plants;
 use crate::any_plant::simulated::Kind;
 use crate::error::Error;
 use crate::figure::Figure;
 use crate::harness::sources::{DIAGNOSIS, of};
 use crate::harness::{Context, Population, Row};
-
-/// Records of a row.
-const RECORDS: u64 = 20;
 
 /// Rows of the small version, with one record each: quick ones.
 const SMALL: [&str; 6] = [
@@ -23,6 +23,16 @@ const SMALL: [&str; 6] = [
     "records of two platforms",
     "servo: as declared",
 ];
+
+/// Records of most rows, and of the small version of the row that has more: they are short.
+const EACH: u64 = 20;
+const SHORT: u64 = 40;
+
+/// Answers that are asked for.
+const LEAST: usize = 5_000;
+
+/// Answers that are shown with what is wrong.
+const SHOWN: usize = 10;
 
 /// Words for the judgements, the right one first.
 const JUDGEMENTS: [(Judgement, &str); 4] = [
@@ -51,6 +61,61 @@ pub(crate) fn of_plants(context: &Context) -> Result<Vec<Figure>, Error> {
     table(context, "records of a user's plant", kinds)
 }
 
+/// All figures of answers as files, of the same records.
+///
+/// # Errors
+/// If a population cannot be drawn.
+pub(crate) fn of_answers(context: &Context) -> Result<Vec<Figure>, Error> {
+    let plants = plants()?;
+    let (mut all, mut is_full) = (Vec::new(), true);
+    for population in populations(&plants[Kind::Servo as usize]) {
+        let records = context.records(&population)?;
+        is_full &= records.full;
+        let answers = records.records.iter().filter_map(|one| one.answer.clone());
+        all.extend(answers.map(|answer| (population.name.clone(), answer)));
+    }
+    let faulty = all
+        .iter()
+        .filter(|(_, one)| !(one.faults.is_empty() && one.settled.is_empty()));
+    for (name, one) in faulty.clone().take(SHOWN) {
+        println!(
+            "{name}: {}",
+            [&one.faults[..], &one.settled[..]].concat().join("; ")
+        );
+    }
+    let share = Statistic::share(&all, |(_, one)| Some(one.faults.is_empty()));
+    let least = if is_full { LEAST } else { 1 } as f64;
+    let settled = all
+        .iter()
+        .filter(|(_, one)| !one.settled.is_empty())
+        .count();
+    let open = all.iter().filter(|(_, one)| one.is_open).count();
+    Ok(vec![
+        Figure::within(
+            "answers of all kinds",
+            [least, f64::INFINITY],
+            all.len() as f64,
+        ),
+        Figure::of_statistic(
+            "answers written, validated, read back, and given to every command that takes one",
+            &share,
+            None,
+            is_full,
+        ),
+        Figure::at_most(
+            "answers of which that failed",
+            0.0,
+            all.iter().filter(|(_, one)| !one.faults.is_empty()).count() as f64,
+            "",
+        ),
+        Figure::note(
+            "answers whose search was cut, or whose rest is not white beside names",
+            open.to_string(),
+        ),
+        Figure::at_most("of these called settled anywhere", 0.0, settled as f64, ""),
+    ])
+}
+
 /// A row for each population, and shares of all records. What is right is the reason of a row.
 fn table(
     context: &Context,
@@ -59,22 +124,9 @@ fn table(
 ) -> Result<Vec<Figure>, Error> {
     let (mut figures, mut all) = (Vec::new(), Vec::new());
     let mut is_full = true;
-    for FieldPopulation {
-        name,
-        first_seed,
-        right,
-        job,
-    } in rows
-    {
-        let small = u64::from(SMALL.contains(&&*name));
-        let population = Population {
-            name: format!("field {name}"),
-            first: first_seed,
-            full: RECORDS,
-            small,
-            sources: of(DIAGNOSIS, &[file!(), "examples/servo"]),
-            job: Box::new(move |seed| Ok(job(seed)?)),
-        };
+    for row in rows {
+        let (name, right) = (row.name.clone(), row.right.clone());
+        let population = population(row);
         let of_row = context.measure(&population, &[Row::words(name, counts)])?;
         figures.extend(of_row.into_iter().map(|figure| Figure {
             reason: right.clone(),
@@ -85,15 +137,56 @@ fn table(
         all.extend(records.records.iter().cloned());
     }
     let total = |(judgement, word): (Judgement, &str)| {
-        let share = Statistic::share(&all, |one| Some(one.judgement == judgement));
+        let share = Statistic::share(&all, |one| Some(one.outcome.judgement == judgement));
         Figure::of_statistic(&format!("{name}: {word}, of all"), &share, None, is_full)
     };
     figures.extend(JUDGEMENTS.map(total));
     Ok(figures)
 }
 
+/// The judged outcome of a record, and what is wrong with the answer as a file.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Fielded {
+    #[serde(flatten)]
+    outcome: FieldOutcome,
+    /// `None` if the diagnosis failed.
+    answer: Option<Checked>,
+}
+
+/// All populations: records of the platform, then of the servo.
+fn populations(servo: &LoadedPlant) -> Vec<Population<'_, Fielded>> {
+    let rows = FieldPopulation::wrong_keys().into_iter();
+    let rows = rows.chain(FieldPopulation::kinds());
+    let rows = rows.chain([FieldPopulation::short()]);
+    let rows = rows.chain(FieldPopulation::plants(servo));
+    rows.map(population).collect()
+}
+
+fn population(row: FieldPopulation<'_>) -> Population<'_, Fielded> {
+    let job = row.job;
+    Population {
+        small: match row.records {
+            EACH => u64::from(SMALL.contains(&&*row.name)),
+            _ => SHORT,
+        },
+        name: format!("field {}", row.name),
+        first: row.first_seed,
+        full: row.records,
+        sources: of(
+            DIAGNOSIS,
+            &[file!(), "crates/figures/src/answers.rs", "examples/servo"],
+        ),
+        job: Box::new(move |seed| {
+            let (outcome, answer) = job(seed)?;
+            let answer = answer.as_ref().map(Checked::of).transpose()?;
+            Ok(Fielded { outcome, answer })
+        }),
+    }
+}
+
 /// Numbers of records by judgement, and the median of their strengths.
-fn counts(records: &[FieldOutcome]) -> String {
+fn counts(records: &[Fielded]) -> String {
+    let records: Vec<&FieldOutcome> = records.iter().map(|one| &one.outcome).collect();
     let counts = JUDGEMENTS.map(|(judgement, word)| {
         let count = records.iter().filter(|one| one.judgement == judgement);
         format!("{} {word}", count.count())

@@ -1,6 +1,7 @@
 //! `cargo figures TOPIC` measures the figures that the documentation claims and prints them with target, number of
 //! runs, seeds and commit. The exit code is 1 if a figure does not hold.
 
+mod answers;
 mod any_plant;
 mod before;
 mod calibration;

@@ -1,16 +1,15 @@
 //! The eight topics: which part measures what.
 
+mod doors;
+
 use crate::error::Error;
 use crate::figure::Figure;
 use crate::harness::Context;
-use crate::harness::sources::{
-    CALIBRATION, COMMAND, DIAGNOSIS, FILTER, INSTRUMENTS, PLANTS, Sources, of,
-};
+use crate::harness::sources::{CALIBRATION, DIAGNOSIS, FILTER, INSTRUMENTS, PLANTS, Sources, of};
 use crate::harness::topic::{Part, Topic};
 use crate::{
-    any_plant, before, calibration, catalogue, comparison, diagnosis_ground, embedded, facts,
-    field, fleet, gain, generator, house, kernel, logs, measured, naming, paper, plant_peers,
-    records, report, truth, watch,
+    any_plant, calibration, catalogue, comparison, diagnosis_ground, embedded, field, gain,
+    generator, kernel, logs, measured, naming, paper, plant_peers, records, truth, watch,
 };
 
 /// All topics.
@@ -271,65 +270,7 @@ pub(crate) const TOPICS: [Topic; 8] = [
             },
         ],
     },
-    Topic {
-        name: "doors",
-        about: "What people meet: report, Python, fleets; the structure of the tree, its build and its gate.",
-        parts: &[
-            part(
-                "structure",
-                "Structure of the tree, cost of a build and of the gate.",
-                of(COMMAND, &["crates", "codegen", "src"]),
-                house::figures,
-            ),
-            part(
-                "before",
-                "Results of 40 records, every key, against those of an earlier build.",
-                of(COMMAND, &["crates/figures/src/before", "tests/data/before"]),
-                before::figures,
-            ),
-            part(
-                "facts",
-                "What screens and pages of 200 answers show, against what an earlier build showed.",
-                of(
-                    COMMAND,
-                    &[
-                        "crates/figures/src/before",
-                        "crates/figures/src/facts",
-                        "crates/figures/src/facts.rs",
-                        "crates/evaluation",
-                        "crates/truth",
-                        "tests/data/before",
-                        "tests/data/facts",
-                    ],
-                ),
-                facts::figures,
-            ),
-            Part {
-                small: false,
-                ..part(
-                    "report",
-                    "The report: its files, in a browser; pictures of it.",
-                    of(
-                        COMMAND,
-                        &["crates/figures/src/report.rs", "crates/figures/src/report"],
-                    ),
-                    report::figures,
-                )
-            },
-            Part {
-                small: false,
-                ..part(
-                    "fleet",
-                    "The Python package: its wheel, a first diagnosis with it, fleets of records.",
-                    of(
-                        &["crates/python", "crates/fleet", "crates/evaluation"],
-                        &["crates/figures/src/fleet.rs", "crates/figures/src/fleet"],
-                    ),
-                    fleet::figures,
-                )
-            },
-        ],
-    },
+    doors::DOORS,
     Topic {
         name: "embedded",
         about: "The filter and the watch in a controller.",

@@ -1,6 +1,6 @@
 //! A diagnosed record, as far as the fleet needs it.
 
-use gyrocal_diagnosis::result::{DiagnosisResult, FindingKind, read_text};
+use gyrocal_answer::{Answer, FindingKind, read_platform_text};
 use gyrocal_hypothesis::ScoreTable;
 use gyrocal_record::SourceText;
 
@@ -54,7 +54,7 @@ pub struct FleetRecord {
 impl FleetRecord {
     /// Of the result of a diagnosis, and its scores.
     #[must_use]
-    pub fn new(name: RecordName, result: &DiagnosisResult, scores: Option<ScoreTable>) -> Self {
+    pub fn new(name: RecordName, result: &Answer, scores: Option<ScoreTable>) -> Self {
         let of = |name: &str, estimate, sigma, unit: &str| Coefficient {
             name: name.to_owned(),
             estimate,
@@ -95,7 +95,7 @@ impl FleetRecord {
     /// Those of reading either.
     pub fn read(name: RecordName, result: &str, scores: Option<&[u8]>) -> Result<Self, FleetError> {
         let origin = format!("{}/{}", name.unit, name.record);
-        let result = read_text(&SourceText::new(result, &origin)?)?;
+        let result = read_platform_text(&SourceText::new(result, &origin)?)?;
         Ok(Self::new(
             name,
             &result,

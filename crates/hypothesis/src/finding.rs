@@ -59,8 +59,8 @@ pub struct Finding {
     pub parameters: Vec<EffectEstimate>,
     /// Root of its statistic: its size in standard deviations.
     pub z: f64,
-    /// Family-wise p-value at its detection.
-    pub p_value: f64,
+    /// Family-wise p-value; `None` where the model is not that of its detection.
+    pub p_value: Option<f64>,
     /// The rest of the confidence set, nearest first.
     pub alternatives: Vec<Alternative>,
     /// Exact equivalents.

@@ -2,7 +2,7 @@
 
 use gyrocal_statistics::math::ln;
 
-use crate::accepted::Accepted;
+use crate::accepted::{Accepted, Detection};
 use crate::context::{MOST_EFFECTS, SearchContext};
 use crate::curve::share_beside_effects;
 use crate::hypothesis::Hypothesis;
@@ -254,7 +254,7 @@ fn try_effect<F: FittedModel>(
     let accepted = Accepted {
         hypothesis: best.hypothesis,
         shape,
-        p_value: 1.0,
+        detection: None,
         searched: best.searched,
         penalty,
     };
@@ -272,8 +272,12 @@ fn try_effect<F: FittedModel>(
         *state = before;
         return Outcome::NotDetected;
     }
+    let model = state.terms();
     if let Some(own) = state.accepted.last_mut() {
-        own.p_value = null.probability(tested);
+        own.detection = Some(Detection {
+            p_value: null.probability(tested),
+            model,
+        });
     }
     Outcome::Gained(gained)
 }

@@ -50,7 +50,7 @@ pub fn fit_with<F: FittedModel>(
         accepted.push(Accepted {
             hypothesis: index,
             shape: first_shape(&context, &own, hypothesis)?,
-            p_value: 1.0,
+            detection: None,
             searched: 0.0,
             penalty: 0.0,
         });

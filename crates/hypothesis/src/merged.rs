@@ -102,11 +102,10 @@ fn best_of<F: FittedModel>(
     else {
         return Ok(None);
     };
-    let p_value = pair.map(|own| state.accepted[own].p_value);
     Ok(Some(Accepted {
         hypothesis: best.hypothesis,
         shape: best.shape(&hypotheses),
-        p_value: p_value[0].min(p_value[1]),
+        detection: None,
         searched: 0.0,
         penalty: null.penalties[best.hypothesis],
     }))

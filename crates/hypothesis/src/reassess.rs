@@ -161,6 +161,7 @@ fn swap<F: FittedModel>(
         hypothesis: other.hypothesis,
         shape: other.shape(&context.set.hypotheses),
         searched: other.searched,
+        detection: None,
         ..own
     };
     accepted.insert(index, swapped);

@@ -16,6 +16,7 @@ use crate::model::FittedModel;
 use crate::null_distribution::{GaussianDraws, NullDistribution};
 use crate::reach::{keep_likely, reaches};
 use crate::score::{Best, NESTED_MODEL_CHI2, Scores};
+use crate::state::terms;
 
 /// Twice the log-likelihood by which two effects may differ and count as equally likely: another name is
 /// not worth a fit.
@@ -116,7 +117,7 @@ fn evaluate_with<F: FittedModel>(
             effect: effect.id,
             parameters: parameters_of(stage, set, accepted, index),
             z: statistic.max(0.0).sqrt(),
-            p_value: own.p_value,
+            p_value: own.p_value_in(&terms(stage, accepted, compared.unmodelled)),
             alternatives,
             exact_equivalents: exact_equivalents(&stage.fitted, effect, &bank, estimates),
             none_of_these: None,

@@ -90,7 +90,7 @@ fn of_effects<F: FittedModel>(
     let mut accepted = [Accepted {
         hypothesis: best.hypothesis,
         shape: best.shape(hypotheses),
-        p_value: by_score.p_value,
+        detection: None,
         searched: best.searched,
         penalty: best.searched + null.penalties[best.hypothesis],
     }];

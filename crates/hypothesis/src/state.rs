@@ -1,12 +1,27 @@
 //! State of a search: the model with its accepted effects.
 
-use crate::accepted::Accepted;
+use crate::accepted::{Accepted, ModelTerms};
 use crate::context::SearchContext;
 use crate::fitted_stage::FittedStage;
 use crate::model::FittedModel;
 use crate::pattern::Unmodelled;
 use crate::rate_noise::{RateNoise, RateNoiseFit};
 use crate::shape::{About, ShapeScale, estimate_shapes};
+
+/// What a model holds.
+pub(crate) fn terms<F>(
+    stage: &FittedStage<F>,
+    accepted: &[Accepted],
+    unmodelled: &[Unmodelled],
+) -> ModelTerms {
+    let mut hypotheses: Vec<usize> = accepted.iter().map(|own| own.hypothesis).collect();
+    hypotheses.sort_unstable();
+    ModelTerms {
+        hypotheses,
+        unmodelled: unmodelled.len(),
+        walking: stage.noise.noise.walking(),
+    }
+}
 
 /// Current model and accepted effects.
 #[derive(Clone)]
@@ -29,6 +44,11 @@ impl<F> SearchState<F> {
             unmodelled: Vec::new(),
             seeks_unmodelled: true,
         }
+    }
+
+    /// What it holds.
+    pub(crate) fn terms(&self) -> ModelTerms {
+        terms(&self.stage, &self.accepted, &self.unmodelled)
     }
 
     /// Penalties of all effects and unmodelled terms for having been searched for: the search penalty of

@@ -8,7 +8,8 @@ use crate::state::SearchState;
 use crate::walk_candidates::{Candidates, Needed};
 
 /// The walks of a model that are named. The one that gains most has the p-value of the test of all walks together;
-/// another one, what it gains beside the others in the model, by the distribution of that test.
+/// another one, what it gains beside the others in the model, by the distribution of that test; beside effects it
+/// was not computed.
 pub(crate) fn named<F: FittedModel>(
     candidates: &Candidates,
     state: &SearchState<F>,
@@ -23,6 +24,8 @@ pub(crate) fn named<F: FittedModel>(
             true => p_value.max(candidates.p_value(walk.gain)),
             false => p_value,
         };
+        // It is that of walks without effects.
+        let p_value = state.accepted.is_empty().then_some(p_value);
         let interval = intervals.get(walk.rate).copied().flatten();
         let finding = walk_finding(
             walk.effect,
@@ -39,7 +42,7 @@ fn walk_finding(
     effect: &'static Effect,
     size: f64,
     interval: Option<[f64; 2]>,
-    (gain, p_value): (f64, f64),
+    (gain, p_value): (f64, Option<f64>),
 ) -> Finding {
     let parameters = effect.parameters.first().map(|parameter| EffectEstimate {
         name: parameter.name,

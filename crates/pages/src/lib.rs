@@ -41,9 +41,11 @@ mod tumble;
 mod uncertainty;
 mod words;
 
+use gyrocal_answer::{Answer, Subject};
+
 pub use allan::{AllanAnswer, of_allan};
 pub use calibration::{CalibratedRecord, of_calibration};
-pub use diagnosis::{of_diagnosis, of_result};
+pub use diagnosis::of_diagnosis;
 pub use error::PageError;
 pub use fleet::of_fleet;
 pub use gyrocal_report::page::{Page, Part};
@@ -54,6 +56,15 @@ pub use plant::{NamedPicture, of_plant, plant_pictures};
 pub use ranked::Ranked;
 pub use tumble::of_tumble;
 pub use uncertainty::{of_budget, of_spread};
+
+/// The page of a written answer: all but the charts over time, for which the record is needed.
+#[must_use]
+pub fn of_result(answer: &Answer) -> Part {
+    match answer.subject {
+        Subject::Plant(_) => plant::of_answer(answer),
+        Subject::Platform | Subject::Strapdown => diagnosis::of_platform(answer),
+    }
+}
 
 /// A page of one answer or several.
 #[must_use]

@@ -1,8 +1,8 @@
 //! Effects by their statistic in the first search: each that is reported with what it cannot be told from,
 //! then others. Bars of a page and a picture show the same.
 
-use gyrocal_diagnosis::{DiagnosisResult, prose};
-use gyrocal_plant::answer::Diagnosis;
+use gyrocal_answer::Answer;
+use gyrocal_diagnosis::prose;
 use gyrocal_report::page::{Bar, BarGroup, Bars, Tint};
 use gyrocal_report::{Omitted, RankedEffect, Ranking, RankingGroup, Role};
 use gyrocal_statistics::format;
@@ -11,9 +11,6 @@ use crate::words::listed;
 
 /// Number of effects shown that are neither reported nor alternatives.
 const OTHERS: usize = 10;
-
-/// Remark beside an effect that no record tells from the reported one.
-const EQUIVALENT: &str = "exact equivalent";
 
 /// A search with its result.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,62 +28,30 @@ struct Cause {
     effect: String,
     /// Its size in standard deviations.
     z: f64,
-    equivalents: Vec<String>,
-    /// Alternatives with their likelihood in words.
+    /// All that it may also be, with how it stands to it in words.
     alternatives: Vec<(String, String)>,
 }
 
 impl Ranked {
-    /// Of a diagnosis of the platform; `None` if nothing was searched.
+    /// Of an answer; `None` if nothing was searched.
     #[must_use]
-    pub fn of_result(result: &DiagnosisResult) -> Option<Self> {
-        let threshold = result.threshold.filter(|threshold| *threshold > 0.0)?;
-        let statistics = result.ranking.iter();
-        let causes = result.causes().map(|finding| Cause {
+    pub fn of(answer: &Answer) -> Option<Self> {
+        let threshold = answer.threshold.filter(|threshold| *threshold > 0.0)?;
+        let statistics = answer.ranking.iter();
+        let causes = answer.causes().map(|finding| Cause {
             effect: finding.effect.clone(),
             z: finding.z,
-            equivalents: finding
-                .equivalents
-                .iter()
-                .map(|equal| equal.effect.clone())
-                .collect(),
             alternatives: finding
                 .alternatives
                 .iter()
                 .map(|other| (other.effect.clone(), prose::likelihood(other)))
                 .collect(),
         });
+        let shares = answer.false_alarm_shares.as_ref();
         let ranked = Self {
             threshold,
-            false_alarm_probability: result.false_alarm_shares.search,
-            statistics: statistics
-                .map(|one| (one.effect.clone(), one.statistic))
-                .collect(),
-            causes: causes.collect(),
-        };
-        (!ranked.statistics.is_empty()).then_some(ranked)
-    }
-
-    /// Of a diagnosis of a plant; `None` if nothing was searched.
-    #[must_use]
-    pub fn of_plant(answer: &Diagnosis) -> Option<Self> {
-        let causes = answer.findings.iter().map(|found| Cause {
-            effect: found.effect.clone(),
-            z: found.z,
-            equivalents: found.equivalents.clone(),
-            alternatives: found
-                .rivals
-                .iter()
-                .map(|(id, deficit)| (id.clone(), format!("{deficit:.1} nats less likely")))
-                .collect(),
-        });
-        let statistics = answer.ranking.iter();
-        if answer.threshold <= 0.0 {
-            return None;
-        }
-        let ranked = Self {
-            threshold: answer.threshold,
-            false_alarm_probability: answer.false_alarm_probability,
+            false_alarm_probability: shares
+                .map_or(answer.false_alarm_probability, |shares| shares.search),
             statistics: statistics
                 .map(|one| (one.effect.clone(), one.statistic))
                 .collect(),
@@ -111,12 +76,9 @@ impl Ranked {
         let mut shown: Vec<&str> = Vec::new();
         for cause in &self.causes {
             let mut effects = vec![bar(&cause.effect, Role::Reported, "")];
-            let equal = cause.equivalents.iter();
-            effects.extend(equal.map(|equal| bar(equal, Role::Alternative, EQUIVALENT)));
             let others = cause.alternatives.iter();
             effects.extend(others.map(|(id, note)| bar(id, Role::Alternative, note)));
             shown.push(&cause.effect);
-            shown.extend(cause.equivalents.iter().map(String::as_str));
             shown.extend(cause.alternatives.iter().map(|(id, _)| id.as_str()));
             groups.push(RankingGroup {
                 label: match effects.len() {
@@ -208,10 +170,6 @@ impl Ranked {
     pub fn picture(&self, subtitle: &str) -> Ranking {
         let (mut groups, omitted) = self.groups();
         for group in &mut groups {
-            group.effects.retain(|effect| {
-                // What was not tested has no bar, but alternatives are named.
-                effect.statistic.is_finite() || effect.note != EQUIVALENT
-            });
             for effect in &mut group.effects {
                 if effect.role == Role::Other {
                     effect.statistic = effect.statistic.max(0.0);

@@ -1,291 +1,354 @@
-//! The answer of a diagnosis, as data.
+//! The answer of a diagnosis from its search.
 
-use serde::Serialize;
+use gyrocal_answer::{
+    Alternative, AlternativeKind, Answer, CoefficientEstimate, Coefficients, Finding, FindingKind,
+    Gaps, NoiseLevel, NotTested, NotTestedReason, OutputTest, Parameter, RankedEffect,
+    RecordSummary, ResidualTest, ResidualVerdict, SCHEMA_VERSION, Subject, UnmodelledPattern,
+    UnmodelledTerm,
+};
+use gyrocal_hypothesis::{
+    EffectEstimate, FittedModel as _, Pattern, SearchOptions, Searched, Selection, Unmodelled,
+};
+use gyrocal_record::Manifest;
+use gyrocal_statistics::math::exp;
+use gyrocal_statistics::{NORMAL_97_5, chi_square_tail, p_of_least};
 
-use crate::identifiability::NullDirection;
-use crate::starts::Starts;
+use crate::description::Kind;
+use crate::error::PlantError;
+use crate::fitted::FittedPlant;
+use crate::loaded::LoadedPlant;
+use crate::prediction::{errors, horizon_s};
+use crate::record::PlantRecord;
+use crate::sentences::{coloured, is_coloured, unmodelled};
+use crate::series::{correlations, of_output};
 
-/// A 95 % interval.
-pub type Interval95 = [f64; 2];
+/// Lags of the test of whiteness.
+const LAGS: usize = 20;
 
-/// The answer of a diagnosis.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Diagnosis {
-    /// Name of the plant.
-    pub plant: String,
-    /// Rows of the record.
-    pub rows: usize,
-    /// Its duration, s.
-    pub duration_s: f64,
-    /// Effects that were tested.
-    pub tested: usize,
-    /// Probability that anything of the catalogue is found in a record without effects.
-    pub false_alarm_probability: f64,
-    /// Statistic from which on an effect is detected in the first search.
-    pub threshold: f64,
-    /// Statistics of the first search, the largest first.
-    pub ranking: Vec<RankedEffect>,
-    /// Inputs that never move.
-    pub still_inputs: Vec<String>,
-    /// Starts of the fit.
-    pub starts: Starts,
-    /// What the record does not determine.
-    pub undetermined: Vec<NullDirection>,
-    /// Detected effects with their sets.
-    pub findings: Vec<Found>,
-    /// Detected terms that no effect of the catalogue explains.
-    pub unexplained: Vec<Unexplained>,
-    /// Effects of the catalogue that the record cannot show.
-    pub left_out: Vec<LeftOut>,
-    /// Parameters, and the initial states of a record that is alone.
-    pub parameters: Vec<Estimate>,
-    /// The records, if there are several.
-    pub records: Vec<RecordAnswer>,
-    /// Estimated noise.
-    pub noise: Vec<NoiseLevel>,
-    /// Errors of simulations of this record.
-    pub errors: Vec<OutputError>,
-    /// Horizon of these simulations, s.
-    pub horizon_s: f64,
-    /// What is left.
-    pub remainder: Vec<Remainder>,
-    /// Gain within the records; `None` where nothing was found.
-    pub cross_validation: Option<CrossValidation>,
-    /// Gain on a later record.
-    pub later_record: Option<Comparison>,
-    /// Runs that could be made next, the one that tells most first.
-    pub next_runs: Vec<NextRun>,
+/// Name of the onset among the parameters of an effect.
+const ONSET: &str = "onset_s";
+
+/// The answer of a search, but for what other passes over the record tell.
+pub(crate) fn answer(
+    plant: &LoadedPlant,
+    searched: &Searched<FittedPlant>,
+    selection: &Selection,
+    options: &SearchOptions,
+) -> Result<Answer, PlantError> {
+    let fitted = &searched.fitted;
+    let record = fitted.record();
+    let (nominal, extended) = (searched.nominal.simulated(), fitted.simulated());
+    let findings = searched.findings.iter();
+    let findings: Vec<Finding> = findings.map(|one| finding(fitted, one)).collect();
+    let remainder = remainder(plant, searched)?;
+    let has_findings = !(findings.is_empty() && remainder.unmodelled.is_empty());
+    let search_complete = !searched.is_cut;
+    let ranking = searched.ranking.iter().map(|one| RankedEffect {
+        effect: one.effect.to_owned(),
+        statistic: one.statistic,
+    });
+    Ok(Answer {
+        schema_version: SCHEMA_VERSION,
+        manifest: Manifest {
+            program: "gyrocal".to_owned(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            model_hash: String::new(),
+            inputs: Vec::new(),
+            seed: options.seed,
+            command: String::new(),
+        },
+        record: summary(record),
+        records: Vec::new(),
+        subject: Subject::Plant(plant.description.name.clone()),
+        later_record: None,
+        verdict: Answer::judged(&findings, &remainder, search_complete),
+        false_alarm_probability: options.false_alarm_probability,
+        false_alarm_shares: None,
+        setup: Vec::new(),
+        norm: None,
+        residuals: None,
+        coefficients: Some(parameters(plant, &searched.nominal, fitted, has_findings)),
+        findings,
+        open_loop: errors(plant, record, (&nominal, &extended), 0..record.len()),
+        horizon_s: Some(horizon_s(plant, record)),
+        gain: None,
+        remainder,
+        set_ups: None,
+        still_inputs: record.still_inputs(&plant.description),
+        undetermined: Vec::new(),
+        starts: Some(searched.nominal.starts()),
+        ranking: ranking.collect(),
+        threshold: (!searched.ranking.is_empty()).then_some(searched.threshold),
+        power: Vec::new(),
+        noise: noise(plant, searched),
+        model_noise: None,
+        noise_audit: None,
+        allan: None,
+        not_searched: not_searched(searched, selection),
+        search_complete,
+        filter: None,
+        next_runs: Vec::new(),
+    })
 }
 
-/// The statistic of an effect.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct RankedEffect {
-    /// Id of the effect.
-    pub effect: String,
-    /// Chi-square of its score, less the penalty of its search.
-    pub statistic: f64,
+/// Size of a record.
+pub(crate) fn summary(record: &PlantRecord) -> RecordSummary {
+    RecordSummary {
+        rows: record.len(),
+        duration_s: record.duration_s(),
+        gaps: Gaps::default(),
+    }
 }
 
-/// One of several records.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct RecordAnswer {
-    /// Its name.
-    pub name: String,
-    /// Its rows.
-    pub rows: usize,
-    /// Its duration, s.
-    pub duration_s: f64,
-    /// Its initial states.
-    pub initial: Vec<Estimate>,
-    /// Errors of simulations of it with the models of all records.
-    pub errors: Vec<OutputError>,
-    /// The diagnosis of it alone.
-    pub alone: Alone,
+/// Effects that the record cannot show.
+fn not_searched(searched: &Searched<FittedPlant>, selection: &Selection) -> Vec<NotTested> {
+    let not_tested = |effect: &str, why: &str| NotTested {
+        effect: effect.to_owned(),
+        reason: NotTestedReason::Unobservable,
+        why: why.to_owned(),
+    };
+    let unavailable = selection.unavailable.iter();
+    let unavailable = unavailable.map(|one| not_tested(one.effect, &one.why));
+    let is_ranked = |id: &str| searched.ranking.iter().any(|one| one.effect == id);
+    let selected = selection.effects.iter();
+    let without_score = selected.filter(|effect| !is_ranked(effect.id));
+    let why = "parameters and initial states take up all of it";
+    let without_score = without_score.map(|effect| not_tested(effect.id, why));
+    unavailable.chain(without_score).collect()
 }
 
-/// The diagnosis of a record alone.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Alone {
-    /// Its verdict, a sentence; the reason if it cannot be diagnosed alone.
-    pub verdict: String,
-    /// Detected effects with their sets.
-    pub findings: Vec<Found>,
+fn finding(fitted: &FittedPlant, found: &gyrocal_hypothesis::Finding) -> Finding {
+    let plant = fitted.loaded();
+    let mut effects = plant.description.effects.iter();
+    let own = effects.find(|effect| effect.id == found.effect);
+    let scale = fitted.record().search_scale();
+    let all = found.parameters.iter();
+    let mut parameters: Vec<Parameter> = all
+        .map(|one| parameter(plant, found.effect, one, scale))
+        .collect();
+    let in_record = in_its_record(fitted.record(), &mut parameters);
+    let alternative = |effect: &str, kind, deficit| Alternative {
+        effect: effect.to_owned(),
+        kind,
+        log_likelihood_deficit: Some(deficit),
+        parameters: Vec::new(),
+    };
+    let equivalents = found.exact_equivalents.iter();
+    let equivalents =
+        equivalents.map(|other| alternative(other.effect, AlternativeKind::ExactEquivalent, 0.0));
+    let rivals = found.alternatives.iter().map(|other| {
+        let deficit = other.log_likelihood_deficit;
+        alternative(other.effect, AlternativeKind::NotExcluded, deficit)
+    });
+    let none = found.none_of_these;
+    Finding {
+        effect: found.effect.to_owned(),
+        name: own.map_or_else(String::new, |own| own.name.clone()),
+        kind: FindingKind::Cause,
+        parameters,
+        z: found.z,
+        p_value: found.p_value,
+        coverage: None,
+        alternatives: equivalents.chain(rivals).collect(),
+        separations: Vec::new(),
+        none_of_these: none.map(|none| none.probability()),
+        none_of_these_log_likelihood_ratio: none.map(|none| none.log_likelihood_ratio),
+        by_record: None,
+        in_record,
+        formula: own.map(|own| own.formula.clone()),
+        gain_nats: None,
+        accepted: Some(true),
+    }
 }
 
-/// A detected effect.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Found {
-    /// The record in which a sudden change happens, from one, if there are several.
-    pub record: Option<usize>,
-    /// Id of the effect that is named.
-    pub effect: String,
-    /// Its meaning.
-    pub name: String,
-    /// Its term.
-    pub formula: String,
-    /// Its size, and its onset if it has one.
-    pub sizes: Vec<Size>,
-    /// Its size in standard deviations.
-    pub z: f64,
-    /// Family-wise p-value.
-    pub p_value: f64,
-    /// The other effects of the set with what their log-likelihood lacks, nats.
-    pub rivals: Vec<(String, f64)>,
-    /// Effects that no record tells from it.
-    pub equivalents: Vec<String>,
-    /// Probability that nothing of the catalogue is the cause.
-    pub none_of_these: Option<f64>,
+/// Puts an onset on the clock of the record that it lies in; gives the number of that record, from one, if
+/// there are several.
+fn in_its_record(record: &PlantRecord, parameters: &mut [Parameter]) -> Option<usize> {
+    let onset = parameters.iter_mut().find(|one| one.name == ONSET)?;
+    let first_s = record.time_s.first()?;
+    let of_row = |row: &usize| record.time_s[*row] - first_s;
+    let before = record.starts.iter();
+    let begun = before.take_while(|row| of_row(row) <= onset.estimate);
+    let before = begun.count();
+    let start_s = before
+        .checked_sub(1)
+        .map_or(0.0, |last| of_row(&record.starts[last]));
+    onset.estimate -= start_s;
+    for end in onset.interval.iter_mut().flatten().flatten() {
+        *end -= start_s;
+    }
+    (!record.starts.is_empty()).then_some(before + 1)
 }
 
-/// An estimated parameter of an effect.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Size {
-    /// `size` or `onset_s`.
-    pub name: String,
-    /// The estimate.
-    pub value: f64,
-    /// Its standard deviation.
-    pub sigma: Option<f64>,
-    /// 95 % interval of an onset, in pieces.
-    pub interval: Option<Vec<Interval95>>,
-    /// Unit.
-    pub unit: String,
+/// A size, or an onset, in units of the plant: the search has another unit of time.
+fn parameter(plant: &LoadedPlant, effect: &str, one: &EffectEstimate, scale: f64) -> Parameter {
+    let mut effects = plant.description.effects.iter();
+    let is_ramp = effects.any(|entry| entry.id == effect && entry.kind == Kind::Ramp);
+    let factor = if one.name == ONSET {
+        scale.recip()
+    } else if is_ramp {
+        scale
+    } else {
+        1.0
+    };
+    let interval = one.interval.as_ref().map(|pieces| {
+        pieces
+            .iter()
+            .map(|[low, high]| [factor * low, factor * high])
+            .collect()
+    });
+    Parameter {
+        name: one.name.to_owned(),
+        estimate: factor * one.estimate,
+        sigma: one.sigma.map(|sigma| factor * sigma),
+        interval,
+        unit: one.unit.to_owned(),
+    }
 }
 
-/// A detected term outside of the catalogue.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Unexplained {
-    /// The rate, output or parameter.
-    pub channel: String,
-    /// Its form.
-    pub form: String,
-    /// Its size.
-    pub size: f64,
-    /// Unit of the size.
-    pub unit: String,
-    /// Natural logarithm of its p-value.
-    pub ln_p_value: f64,
+/// Estimates of both models with their standard deviations, by name, unit and declared value.
+pub(crate) fn coefficients(
+    all: impl Iterator<Item = (String, String, f64, [[f64; 2]; 2])>,
+    has_findings: bool,
+) -> Coefficients {
+    let (mut declared, mut nominal, mut extended) = (Vec::new(), Vec::new(), Vec::new());
+    for (name, unit, value, models) in all {
+        let [before, after] = models.map(|[estimate, sigma]| CoefficientEstimate {
+            name: name.clone(),
+            estimate,
+            sigma,
+            unit: unit.clone(),
+        });
+        declared.push(value);
+        nominal.push(before);
+        extended.push(after);
+    }
+    Coefficients {
+        declared,
+        nominal,
+        extended: has_findings.then_some(extended),
+        over_set: None,
+        members: Vec::new(),
+        covariance: Vec::new(),
+    }
 }
 
-/// An effect that was not tested.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct LeftOut {
-    /// Its id.
-    pub effect: String,
-    /// The reason.
-    pub why: String,
+/// Parameters, and initial states of a record that is alone: several have initial states of their own.
+fn parameters(
+    plant: &LoadedPlant,
+    nominal: &FittedPlant,
+    fitted: &FittedPlant,
+    has_findings: bool,
+) -> Coefficients {
+    let states = plant.description.states.len();
+    let only = fitted.record().starts.is_empty();
+    let own = plant.description.states.iter().filter(|_| only);
+    let initial = own.map(|state| {
+        let name = format!("initial {}", state.id);
+        (name, state.unit.clone(), state.initial)
+    });
+    let parameters = plant.description.parameters.iter();
+    let parameters = parameters.map(|one| (one.id.clone(), one.unit.clone(), one.value));
+    let all = parameters.zip(states..).chain(initial.zip(0..));
+    let all = all.map(|((name, unit, declared), place)| {
+        let of = |fit: &FittedPlant| {
+            let sigma = fit.covariance()[(place, place)].sqrt();
+            [declared + fit.values()[place], sigma]
+        };
+        (name, unit, declared, [of(nominal), of(fitted)])
+    });
+    coefficients(all, has_findings)
 }
 
-/// An estimated parameter or initial state.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Estimate {
-    /// Its name.
-    pub name: String,
-    /// Unit.
-    pub unit: String,
-    /// Declared value.
-    pub declared: f64,
-    /// Estimate of the nominal model.
-    pub nominal: f64,
-    /// Standard deviation of that estimate.
-    pub nominal_sigma: f64,
-    /// Estimate of the model with all findings.
-    pub value: f64,
-    /// Its standard deviation.
-    pub sigma: f64,
+fn noise(plant: &LoadedPlant, searched: &Searched<FittedPlant>) -> Vec<NoiseLevel> {
+    let rates = plant.tables().rates.len();
+    let (ratios, sigmas) = (&searched.noise.noise.white, &searched.noise.white_sigma);
+    let description = &plant.description;
+    let outputs = description.outputs.iter().map(|one| one.id.clone());
+    let driven = description.noises.iter();
+    let driven = driven.map(|one| format!("rate of {}", description.states[one.state].id));
+    outputs
+        .chain(driven)
+        .zip(ratios[rates..].iter().zip(&sigmas[rates..]))
+        .map(|(channel, (ratio, sigma))| {
+            let factor = exp(NORMAL_97_5 * sigma);
+            NoiseLevel {
+                channel,
+                ratio: *ratio,
+                interval: [ratio / factor, ratio * factor],
+            }
+        })
+        .collect()
 }
 
-/// An estimated noise.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct NoiseLevel {
-    /// The output or rate.
-    pub of: String,
-    /// Standard deviation over the declared one.
-    pub ratio: f64,
-    /// Its 95 % interval.
-    pub interval: Interval95,
+/// What the extended model leaves: Ljung and Box's test of the innovations of each output, and terms outside of
+/// the catalogue.
+fn remainder(
+    plant: &LoadedPlant,
+    searched: &Searched<FittedPlant>,
+) -> Result<ResidualTest, PlantError> {
+    let scale = searched.fitted.record().search_scale();
+    let terms = searched.unmodelled.iter();
+    let terms: Vec<UnmodelledTerm> = terms.map(|one| term(one, scale)).collect();
+    let whitened = searched.fitted.whitened()?;
+    let all = plant.description.outputs.iter().enumerate();
+    let tests = all.filter_map(|(index, output)| {
+        Some(OutputTest {
+            output: output.id.clone(),
+            p_value: white(&of_output(&whitened, index))?,
+        })
+    });
+    let outputs: Vec<OutputTest> = tests.collect();
+    let least = outputs.iter().map(|one| one.p_value).reduce(f64::min);
+    let verdict = if !terms.is_empty() || outputs.iter().any(is_coloured) {
+        ResidualVerdict::Unexplained
+    } else if outputs.len() < plant.description.outputs.len() {
+        ResidualVerdict::NotTested
+    } else {
+        ResidualVerdict::White
+    };
+    let rare = outputs.iter().filter(|one| is_coloured(one));
+    let words = terms.iter().map(unmodelled).chain(rare.map(coloured));
+    let description = match verdict {
+        ResidualVerdict::NotTested => "Too short a record for a test of each output.".to_owned(),
+        _ => words.collect::<Vec<_>>().join(" "),
+    };
+    Ok(ResidualTest {
+        verdict,
+        p_value: least.map(|least| p_of_least(least, outputs.len() as f64)),
+        description,
+        line: None,
+        correlation: None,
+        outputs,
+        unmodelled: terms,
+    })
 }
 
-/// Root mean square error of an output in simulations.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct OutputError {
-    /// The output.
-    pub output: String,
-    /// Unit.
-    pub unit: String,
-    /// With the nominal model.
-    pub nominal: f64,
-    /// With all findings.
-    pub extended: f64,
+/// Probability of as much correlation in white innovations; `None` of too few.
+fn white(innovations: &[f64]) -> Option<f64> {
+    let rows = innovations.len() as f64;
+    let correlations = correlations(innovations, LAGS);
+    let terms = correlations.iter().zip(1..);
+    let statistic: f64 = terms
+        .map(|(correlation, lag)| correlation * correlation / (rows - f64::from(lag)))
+        .sum();
+    let p_value = chi_square_tail(rows * (rows + 2.0) * statistic, correlations.len() as f64);
+    // Not a number where all innovations are zero.
+    p_value.filter(|p| p.is_finite())
 }
 
-/// Test of what the extended model leaves of an output.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Remainder {
-    /// The output.
-    pub output: String,
-    /// p-value of white innovations.
-    pub p_value: f64,
-}
-
-/// Gain of what was found in parts of the record that are predicted from the others; of several records each is
-/// a part.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct CrossValidation {
-    /// Logarithm of the density of each part with the findings over that without; `None` of a part without which
-    /// the others do not determine the findings.
-    pub gains_nats: Vec<Option<f64>>,
-}
-
-/// What a run that has not been made would tell.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct NextRun {
-    /// Its name.
-    pub name: String,
-    /// Its rows.
-    pub rows: usize,
-    /// Its duration, s.
-    pub duration_s: f64,
-    /// Standard deviations of parameters and sizes.
-    pub sigmas: Vec<NextSigma>,
-    /// Named effects beside the rivals of their sets.
-    pub told_apart: Vec<ToldApart>,
-}
-
-/// A standard deviation before and after a run.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct NextSigma {
-    /// The parameter, or the effect with the name of its size.
-    pub name: String,
-    /// Unit.
-    pub unit: String,
-    /// From the records.
-    pub now: f64,
-    /// From the records and the run.
-    pub after: f64,
-}
-
-/// A named effect and a rival before and after a run.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct ToldApart {
-    /// The named effect.
-    pub effect: String,
-    /// The rival.
-    pub rival: String,
-    /// What the rival leaves of the named effect at its size, in standard deviations, from the records.
-    pub now: f64,
-    /// The same from the records and the run.
-    pub after: f64,
-    /// Probability that the rival leaves the set with the run, if the named effect is the cause.
-    pub probability: f64,
-}
-
-/// Both models on a later record, with the parameters of the first.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Comparison {
-    /// Rows of the later record.
-    pub rows: usize,
-    /// Logarithm of the density of the record with the findings over that without.
-    pub gain_nats: f64,
-    /// Horizon of the simulations, s.
-    pub horizon_s: f64,
-    /// Errors of the simulations.
-    pub errors: Vec<OutputError>,
+fn term(one: &Unmodelled, scale: f64) -> UnmodelledTerm {
+    let (pattern, period_h, depends_on) = match one.pattern {
+        Pattern::Line { period_h } => (UnmodelledPattern::Line, Some(period_h / scale), None),
+        Pattern::Curve { name, .. } => (UnmodelledPattern::Curve, None, Some(name.to_owned())),
+    };
+    UnmodelledTerm {
+        channel: one.describes.name.to_owned(),
+        pattern,
+        period_h,
+        depends_on,
+        size: one.size,
+        unit: one.describes.unit.to_owned(),
+        p_value: exp(one.ln_probability),
+    }
 }

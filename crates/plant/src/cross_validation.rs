@@ -2,11 +2,11 @@
 
 use core::ops::Range;
 
+use gyrocal_answer::{Gain, Prediction};
 use gyrocal_hypothesis::{FittedModel as _, Searched};
 use gyrocal_statistics::math::ln;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-use crate::answer::CrossValidation;
 use crate::error::PlantError;
 use crate::fitted::FittedPlant;
 use crate::pass::{Keep, Reduced, reduce};
@@ -22,7 +22,7 @@ const PARTS: usize = 6;
 /// [`PlantError::Singular`].
 pub(crate) fn cross_validated(
     searched: &Searched<FittedPlant>,
-) -> Result<Option<CrossValidation>, PlantError> {
+) -> Result<Option<Gain>, PlantError> {
     if searched.findings.is_empty() && searched.unmodelled.is_empty() {
         return Ok(None);
     }
@@ -30,10 +30,18 @@ pub(crate) fn cross_validated(
     let before = searched.nominal.part_scores(&extended.ratios)?;
     let after = extended.part_scores(&extended.ratios)?;
     let pairs = before.into_iter().zip(after);
-    Ok(Some(CrossValidation {
-        gains_nats: pairs
-            .map(|(before, after)| Some(after? - before?))
-            .collect(),
+    let blocks: Vec<Option<f64>> = pairs
+        .map(|(before, after)| Some(after? - before?))
+        .collect();
+    let effects = searched.findings.iter();
+    Ok(Some(Gain {
+        effects: effects.map(|one| one.effect.to_owned()).collect(),
+        prediction: Prediction::CrossValidated,
+        cross_validated_log_score_nats: blocks.iter().flatten().sum(),
+        block_log_score_nats: blocks,
+        free_run_rms_g: None,
+        coefficient_shift: Vec::new(),
+        validation: None,
     }))
 }
 

@@ -1,9 +1,9 @@
 //! A diagnosis with the fits that it rests on: outputs over time and correlations of both models.
 
+use gyrocal_answer::Answer;
 use gyrocal_hypothesis::Searched;
 use gyrocal_statistics::NORMAL_97_5;
 
-use crate::answer::Diagnosis;
 use crate::error::PlantError;
 use crate::fitted::FittedPlant;
 use crate::series::{OutputCorrelation, RecordSeries, correlations, of_output};
@@ -11,7 +11,7 @@ use crate::series::{OutputCorrelation, RecordSeries, correlations, of_output};
 /// A diagnosis with the fits that it rests on.
 pub struct Diagnosed {
     /// The answer.
-    pub answer: Diagnosis,
+    pub answer: Answer,
     /// The search, with the nominal and the extended model.
     pub searched: Searched<FittedPlant>,
     /// The later record, predicted by both models.

@@ -1,38 +1,10 @@
 //! The terms of the catalogue that a written diagnosis extends a plant by, and their place in its script.
 
-use serde::Deserialize;
+use gyrocal_answer::Answer;
 
-use crate::answer::LeftOut;
 use crate::description::Kind;
 use crate::error::PlantError;
 use crate::loaded::LoadedPlant;
-
-/// A diagnosis as it is written for programs, as far as an extension needs it.
-#[derive(Clone, Debug, Deserialize, PartialEq)]
-pub struct WrittenDiagnosis {
-    /// Name of the plant.
-    pub plant: String,
-    /// Detected effects.
-    pub findings: Vec<WrittenFinding>,
-}
-
-/// A detected effect.
-#[derive(Clone, Debug, Deserialize, PartialEq)]
-pub struct WrittenFinding {
-    /// Its id.
-    pub effect: String,
-    /// Its size, and its onset if it has one.
-    pub sizes: Vec<WrittenSize>,
-}
-
-/// An estimated parameter of an effect.
-#[derive(Clone, Debug, Deserialize, PartialEq)]
-pub struct WrittenSize {
-    /// The estimate.
-    pub value: f64,
-    /// Its standard deviation.
-    pub sigma: Option<f64>,
-}
 
 /// A term of the equations.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,34 +22,33 @@ pub struct ExtensionTerm {
 pub struct Extension {
     /// Terms for the equations.
     pub terms: Vec<ExtensionTerm>,
-    /// Findings that are none.
-    pub left_out: Vec<LeftOut>,
+    /// Findings that are none, with the reason.
+    pub left_out: Vec<(String, &'static str)>,
 }
 
 impl Extension {
     /// The findings of a diagnosis of this plant that are terms of its catalogue. Functions of time are
     /// none: they belong to the record and not to the equations.
     #[must_use]
-    pub fn of(plant: &LoadedPlant, diagnosis: &WrittenDiagnosis) -> Self {
+    pub fn of(plant: &LoadedPlant, answer: &Answer) -> Self {
         let mut extension = Self::default();
-        for finding in &diagnosis.findings {
+        for finding in &answer.findings {
             let mut effects = plant.description.effects.iter();
             let entry = effects.find(|entry| entry.id == finding.effect);
-            let size = finding.sizes.first();
+            let size = finding.parameters.first();
             match (entry.map(|entry| entry.kind), size) {
                 (Some(Kind::Term), Some(size)) => extension.terms.push(ExtensionTerm {
                     effect: finding.effect.clone(),
-                    value: size.value,
+                    value: size.estimate,
                     sigma: size.sigma.unwrap_or(0.0),
                 }),
-                (kind, _) => extension.left_out.push(LeftOut {
-                    effect: finding.effect.clone(),
-                    why: match kind {
+                (kind, _) => {
+                    let why = match kind {
                         None => "is no effect of this plant's catalogue",
                         Some(_) => "is a function of time, which is no term of the equations",
-                    }
-                    .to_owned(),
-                }),
+                    };
+                    extension.left_out.push((finding.effect.clone(), why));
+                }
             }
         }
         extension

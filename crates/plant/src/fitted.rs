@@ -4,6 +4,7 @@ mod model;
 
 use std::sync::Arc;
 
+use gyrocal_answer::Starts;
 use gyrocal_hypothesis::{Column, FittedModel, ModelExtension, RateNoise, Rows};
 use nalgebra::DMatrix;
 
@@ -16,7 +17,7 @@ use crate::pass::{Keep, Reduced, reduce};
 use crate::problem::Problem;
 use crate::record::PlantRecord;
 use crate::solve::{Iterate, Solution, Solver};
-use crate::starts::{self, Starts};
+use crate::starts;
 
 /// Standard deviation of a parameter that nothing is known of before a record, over its declared value: an
 /// estimate three times as large costs a deviance of 0.0004, and what no record determines stays finite.
@@ -120,8 +121,8 @@ impl FittedPlant {
 
     /// Starts that were tried for the nominal model.
     #[must_use]
-    pub fn starts(&self) -> &Starts {
-        &self.starts
+    pub fn starts(&self) -> Starts {
+        self.starts
     }
 
     /// Standard deviations of the noise over the declared ones: outputs, then noises of rates.
@@ -206,7 +207,7 @@ impl FittedPlant {
         let solver = Solver::new(&self.problem, extension, self.problem.variances(&ratios));
         let solution = solver.solve(start)?;
         let problem = Arc::clone(&self.problem);
-        let starts = self.starts.clone();
+        let starts = self.starts;
         Ok(Self::of(
             problem,
             extension.clone(),

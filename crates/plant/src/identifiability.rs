@@ -8,9 +8,9 @@
 
 use std::sync::Arc;
 
+use gyrocal_answer::{NullDirection, NullPart};
 use gyrocal_hypothesis::ModelExtension;
 use gyrocal_statistics::deviates::Draw;
-use gyrocal_statistics::format::significant;
 use gyrocal_statistics::math::exp;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
@@ -39,63 +39,8 @@ const SPREAD: f64 = 0.2;
 /// Least part of a direction that is named.
 const NAMED: f64 = 0.02;
 
-/// A direction that a record does not determine.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct NullDirection {
-    /// Whether no record determines it; this record does not otherwise.
-    pub is_gauge: bool,
-    /// Names with their changes: a share of a value that is not zero, in the unit otherwise.
-    pub parts: Vec<NullPart>,
-    /// The parameter that was held for it.
-    pub held: Option<String>,
-}
-
-/// One name of a direction.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct NullPart {
-    /// Parameter or initial state.
-    pub name: String,
-    /// Its change along the direction, the largest being one.
-    pub change: f64,
-    /// Whether the change is a share of its value.
-    pub is_share: bool,
-    /// Index of the nominal parameter; `None` of an initial state.
-    #[serde(skip)]
-    pub parameter: Option<usize>,
-}
-
-impl NullDirection {
-    /// One sentence without a full stop.
-    #[must_use]
-    pub fn sentence(&self) -> String {
-        let part = |part: &NullPart| {
-            let sign = if part.change < 0.0 { "−" } else { "+" };
-            let size = part.change.abs();
-            if part.is_share {
-                format!("{} by {sign}{} %", part.name, significant(size, 3))
-            } else {
-                format!("{} by {sign}{}", part.name, significant(size, 3))
-            }
-        };
-        let parts: Vec<String> = self.parts.iter().map(part).collect();
-        let held = self.held.as_ref().map_or_else(String::new, |held| {
-            format!("; {held} is held at its declared value")
-        });
-        if self.is_gauge {
-            format!(
-                "no record of this plant shows a change of {} together{held}",
-                parts.join(", ")
-            )
-        } else {
-            format!(
-                "this record does not show a change of {}{held}: with another input it would",
-                parts.join(", ")
-            )
-        }
-    }
-}
+/// A null direction with the indices of the nominal parameters in it, the largest part first.
+type Indexed = (NullDirection, Vec<usize>);
 
 impl FittedPlant {
     /// Directions of initial states and parameters that the record does not determine, priors aside.
@@ -103,6 +48,11 @@ impl FittedPlant {
     /// # Errors
     /// [`PlantError::Singular`], [`PlantError::NotFinite`].
     pub fn null_directions(&self) -> Result<Vec<NullDirection>, PlantError> {
+        let all = self.indexed_directions()?.into_iter();
+        Ok(all.map(|(direction, _)| direction).collect())
+    }
+
+    fn indexed_directions(&self) -> Result<Vec<Indexed>, PlantError> {
         let mut lines = self.lines();
         lines.truncate(self.problem.nominal());
         lines.extend(self.problem.later_starts());
@@ -226,7 +176,7 @@ impl FittedPlant {
         direction: &DVector<f64>,
         scales: &DVector<f64>,
         others: &DMatrix<f64>,
-    ) -> NullDirection {
+    ) -> Indexed {
         let description = &self.problem.plant.description;
         let n = description.states.len();
         let own = direction.rows(n, description.parameters.len()).into_owned();
@@ -248,46 +198,46 @@ impl FittedPlant {
                 (name, 0.0, None)
             })
         });
-        let mut parts: Vec<NullPart> = states
+        let mut parts: Vec<(NullPart, Option<usize>)> = states
             .chain(parameters)
             .chain(later)
             .zip(direction.iter().zip(scales.iter()))
             .map(|((name, value, parameter), (part, scale))| {
                 let change = part * scale;
                 let is_share = value != 0.0;
-                NullPart {
+                let part = NullPart {
                     name,
                     change: if is_share { change / value } else { change },
                     is_share,
-                    parameter,
-                }
+                };
+                (part, parameter)
             })
             .collect();
-        let shares = parts.iter().filter(|part| part.is_share);
-        let largest = shares.map(|part| part.change.abs()).fold(0.0, f64::max);
-        let largest = if largest > 0.0 {
-            largest
-        } else {
-            parts
-                .iter()
-                .map(|part| part.change.abs())
-                .fold(0.0, f64::max)
+        let largest = |shares: bool| {
+            let own = parts.iter().filter(|(part, _)| part.is_share || !shares);
+            own.map(|(part, _)| part.change.abs()).fold(0.0, f64::max)
         };
-        // In percent of the largest.
-        for part in &mut parts {
+        let largest = match largest(true) {
+            share if share > 0.0 => share,
+            _ => largest(false),
+        };
+        for (part, _) in &mut parts {
             part.change /= largest;
         }
         let mut index = 0;
-        parts.retain(|part| {
+        parts.retain(|(part, _)| {
             index += 1;
             direction[index - 1].abs() > NAMED && part.change.abs() > NAMED
         });
-        parts.sort_by(|a, b| b.change.abs().total_cmp(&a.change.abs()));
-        NullDirection {
+        parts.sort_by(|(a, _), (b, _)| b.change.abs().total_cmp(&a.change.abs()));
+        let parameters = parts.iter().filter_map(|(_, parameter)| *parameter);
+        let parameters = parameters.collect();
+        let direction = NullDirection {
             is_gauge,
-            parts,
+            parts: parts.into_iter().map(|(part, _)| part).collect(),
             held: None,
-        }
+        };
+        (direction, parameters)
     }
 
     /// Nominal parameters to hold, one for each null direction, with the directions.
@@ -295,11 +245,11 @@ impl FittedPlant {
     /// # Errors
     /// As [`Self::null_directions`].
     pub fn to_hold(&self) -> Result<(Vec<usize>, Vec<NullDirection>), PlantError> {
-        let mut directions = self.null_directions()?;
+        let mut directions = self.indexed_directions()?;
         let mut held = Vec::new();
         let parameters = &self.problem.plant.description.parameters;
-        for direction in &mut directions {
-            let free = direction.parts.iter().filter_map(|part| part.parameter);
+        for (direction, own) in &mut directions {
+            let free = own.iter().copied();
             // What has a prior needs no holding.
             let known = free
                 .clone()
@@ -310,7 +260,8 @@ impl FittedPlant {
                 direction.held = Some(parameters[index].id.clone());
             }
         }
-        Ok((held, directions))
+        let directions = directions.into_iter().map(|(direction, _)| direction);
+        Ok((held, directions.collect()))
     }
 }
 

@@ -6,8 +6,8 @@
 //! effects, written by the Python package `gyrocal_plant` (`docs/any-plant.md`). [`LoadedPlant`] interprets
 //! it, or takes generated Rust ([`Generated`]) for its functions. [`diagnose`] fits the nominal model to a
 //! [`PlantRecord`], searches for the effects of the catalogue and returns them with sets, sizes,
-//! significance and, with a later record, their gain. [`diagnose_records`] does so for several records of one
-//! plant.
+//! significance and, with a later record, their gain: a [`gyrocal_answer::Answer`]. [`diagnose_records`] does so
+//! for several records of one plant. [`sentences`] say it in words.
 //!
 //! # How it works
 //!
@@ -22,13 +22,13 @@
 //! ```no_run
 //! use std::path::Path;
 //!
-//! use gyrocal_plant::{ColumnMap, LoadedPlant, SearchOptions, diagnose};
+//! use gyrocal_plant::{ColumnMap, LoadedPlant, SearchOptions, diagnose, sentences};
 //!
 //! let plant = LoadedPlant::read(Path::new("plant.json"))?;
 //! let columns = ColumnMap::read(Path::new("columns.toml"))?;
 //! let record = columns.record(plant.description(), Path::new("record.csv"))?;
 //! let diagnosed = diagnose(&plant, record, None, &SearchOptions::default())?;
-//! for sentence in diagnosed.answer.sentences() {
+//! for sentence in sentences::all(&diagnosed.answer) {
 //!     println!("{sentence}");
 //! }
 //! # Ok::<(), gyrocal_plant::PlantError>(())
@@ -38,7 +38,7 @@
 //!
 //! It draws nothing, and has no random walks. Play and delays are those of inputs.
 
-pub mod answer;
+mod answer;
 mod backward;
 mod catalogue;
 mod columns;
@@ -64,7 +64,7 @@ mod pass;
 mod prediction;
 mod problem;
 mod record;
-mod sentences;
+pub mod sentences;
 mod series;
 mod several;
 mod solve;
@@ -76,15 +76,14 @@ pub use columns::ColumnMap;
 pub use diagnosed::Diagnosed;
 pub use diagnosis::diagnose;
 pub use error::PlantError;
-pub use extension::{Extension, ExtensionTerm, WrittenDiagnosis, WrittenFinding, WrittenSize};
+pub use extension::{Extension, ExtensionTerm};
 pub use fitted::FittedPlant;
 pub use functions::{Functions, OutputsAt, Point, RatesAt, Sizes, Workspace};
 pub use generated::Generated;
 pub use gyrocal_hypothesis::SearchOptions;
-pub use identifiability::{NullDirection, NullPart};
 pub use interpreted::Interpreted;
 pub use loaded::LoadedPlant;
 pub use record::PlantRecord;
+pub use sentences::mean_ratio;
 pub use series::{OutputCorrelation, OutputSeries, RecordSeries};
 pub use several::{DiagnosedRecords, NamedRecord, diagnose_records};
-pub use starts::Starts;

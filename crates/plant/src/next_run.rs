@@ -7,13 +7,12 @@
 
 use std::sync::Arc;
 
+use gyrocal_answer::{AlternativeKind, Coefficients, Finding, NextRun, NextSigma, ToldApart};
 use gyrocal_hypothesis::{CONFIDENCE_SET_DEVIANCE, FittedModel as _};
 use gyrocal_scalar::effect::Effect;
-use gyrocal_statistics::math::{exp, ln};
 use gyrocal_statistics::normal_probability;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-use crate::answer::{Found, NextRun, NextSigma, ToldApart};
 use crate::diagnosed::Diagnosed;
 use crate::error::PlantError;
 use crate::fitted::FittedPlant;
@@ -23,6 +22,7 @@ use crate::pass::{Keep, reduce};
 use crate::prediction::least_prior;
 use crate::problem::Problem;
 use crate::record::PlantRecord;
+use crate::sentences::mean_ratio;
 use crate::several::NamedRecord;
 use crate::solve::Solver;
 
@@ -46,8 +46,8 @@ impl Diagnosed {
         let forecasts = runs.into_iter().map(|run| self.next_run(run));
         let mut forecasts: Vec<NextRun> = forecasts.collect::<Result<_, _>>()?;
         forecasts.sort_by(|a, b| {
-            let told = b.least_probability().total_cmp(&a.least_probability());
-            told.then(a.mean_ratio().total_cmp(&b.mean_ratio()))
+            let told = least_probability(b).total_cmp(&least_probability(a));
+            told.then(mean_ratio(a).total_cmp(&mean_ratio(b)))
         });
         self.answer.next_runs = forecasts;
         Ok(())
@@ -76,19 +76,16 @@ impl Diagnosed {
     }
 }
 
-impl NextRun {
-    /// The smallest probability with which a rival leaves its set; one without rivals.
-    fn least_probability(&self) -> f64 {
-        let all = self.told_apart.iter().map(|one| one.probability);
-        all.fold(1.0, f64::min)
-    }
+/// The smallest probability with which an alternative leaves its set; one without alternatives.
+fn least_probability(run: &NextRun) -> f64 {
+    let all = run.told_apart.iter().map(|one| one.probability);
+    all.fold(1.0, f64::min)
+}
 
-    /// Geometric mean of the standard deviations after the run over those before.
-    #[must_use]
-    pub fn mean_ratio(&self) -> f64 {
-        let ratios = self.sigmas.iter().map(|one| ln(one.after / one.now));
-        exp(ratios.sum::<f64>() / self.sigmas.len().max(1) as f64)
-    }
+/// The other effects of the set of a finding.
+fn rivals(finding: &Finding) -> impl Iterator<Item = &str> {
+    let all = finding.of_kind(AlternativeKind::NotExcluded);
+    all.map(|other| &*other.effect)
 }
 
 /// An effect whose columns another record has too.
@@ -100,7 +97,7 @@ fn lasting(fitted: &FittedPlant, effect: &str) -> Option<&'static Effect> {
 impl<'a> Informed<'a> {
     fn new(
         fitted: &'a FittedPlant,
-        findings: &[Found],
+        findings: &[Finding],
         run: PlantRecord,
     ) -> Result<Self, PlantError> {
         let description = &fitted.loaded().description;
@@ -108,8 +105,8 @@ impl<'a> Informed<'a> {
         let mut unknowns: Vec<usize> = (states..fitted.problem.nominal()).collect();
         let own = fitted.extension().parameters.iter();
         unknowns.extend(own.map(|(parameter, _)| *parameter));
-        let rivals = findings.iter().flat_map(|found| &found.rivals);
-        for row in rivals.filter_map(|(rival, _)| lasting(fitted, rival)) {
+        let rivals = findings.iter().flat_map(rivals);
+        for row in rivals.filter_map(|rival| lasting(fitted, rival)) {
             unknowns.extend(row.model_parameters());
         }
         let mut seen = Vec::with_capacity(unknowns.len());
@@ -176,7 +173,8 @@ impl<'a> Informed<'a> {
             after: sigma * ratio(place),
         };
         let answer = &diagnosed.answer;
-        let parameters = answer.parameters.iter().zip(0..);
+        let parameters = answer.coefficients.iter();
+        let parameters = parameters.flat_map(Coefficients::best).zip(0..);
         let count = self.fitted.loaded().description.parameters.len();
         let mut all: Vec<NextSigma> = parameters
             .take(count)
@@ -185,7 +183,7 @@ impl<'a> Informed<'a> {
         for found in &answer.findings {
             let row = lasting(self.fitted, &found.effect);
             let places = row.and_then(|row| self.places(row)).unwrap_or_default();
-            for (size, place) in found.sizes.iter().zip(places) {
+            for (size, place) in found.parameters.iter().zip(places) {
                 if let Some(sigma) = size.sigma {
                     let name = format!("{} {}", found.effect, size.name);
                     all.push(forecast(name, &size.unit, sigma, place));
@@ -196,14 +194,14 @@ impl<'a> Informed<'a> {
     }
 
     /// Each named effect against each of its rivals.
-    fn told_apart(&self, findings: &[Found]) -> Vec<ToldApart> {
+    fn told_apart(&self, findings: &[Finding]) -> Vec<ToldApart> {
         let mut all = Vec::new();
         for found in findings {
             let named = lasting(self.fitted, &found.effect);
             let Some(named) = named.and_then(|row| self.places(row)) else {
                 continue;
             };
-            for (rival, _) in &found.rivals {
+            for rival in rivals(found) {
                 let row = lasting(self.fitted, rival).and_then(|row| self.places(row));
                 let distances = row.and_then(|rival| {
                     let [now, after] = [&self.now, &self.after];
@@ -219,7 +217,7 @@ impl<'a> Informed<'a> {
                 let beyond = (after * after - CONFIDENCE_SET_DEVIANCE) / (2.0 * after);
                 all.push(ToldApart {
                     effect: found.effect.clone(),
-                    rival: rival.clone(),
+                    alternative: rival.to_owned(),
                     now,
                     after,
                     probability: if after > 0.0 {

@@ -4,6 +4,7 @@
 use core::ops::Range;
 use std::sync::Arc;
 
+use gyrocal_answer::OutputError;
 use gyrocal_hypothesis::FittedModel as _;
 use gyrocal_statistics::math::ln;
 use gyrocal_statistics::rms_of_present;
@@ -60,8 +61,28 @@ pub(crate) fn horizon_s(plant: &LoadedPlant, record: &PlantRecord) -> f64 {
     record.time_s[horizon - 1] - record.time_s[0]
 }
 
+/// Errors of simulations by the nominal and the extended model over some rows.
+pub(crate) fn errors(
+    plant: &LoadedPlant,
+    record: &PlantRecord,
+    (nominal, extended): (&[f64], &[f64]),
+    rows: Range<usize>,
+) -> Vec<OutputError> {
+    let nominal = rms(record, nominal, rows.clone());
+    let extended = rms(record, extended, rows);
+    let outputs = plant.description.outputs.iter();
+    let all = outputs.zip(nominal.into_iter().zip(extended));
+    all.map(|(output, (nominal, extended))| OutputError {
+        output: output.id.clone(),
+        unit: output.unit.clone(),
+        nominal: Some(nominal).filter(|rms| rms.is_finite()),
+        extended: Some(extended).filter(|rms| rms.is_finite()),
+    })
+    .collect()
+}
+
 /// Root mean square of measured less simulated outputs over some rows, of each output.
-pub(crate) fn rms(record: &PlantRecord, simulated: &[f64], rows: Range<usize>) -> Vec<f64> {
+fn rms(record: &PlantRecord, simulated: &[f64], rows: Range<usize>) -> Vec<f64> {
     let outputs = simulated.len() / record.len().max(1);
     let of = |output: usize| {
         let places = rows.clone().map(|row| row * outputs + output);

@@ -1,226 +1,275 @@
-//! The answer of a diagnosis in sentences.
+//! The answer of a diagnosis of a plant in sentences.
 
-use gyrocal_statistics::format::{p_value, significant};
-
-use crate::answer::{
-    Comparison, CrossValidation, Diagnosis, Found, NextRun, OutputError, RecordAnswer, Size,
-    Unexplained,
+use gyrocal_answer::{
+    Alternative, AlternativeKind, Answer, Finding, Gain, NextRun, NullDirection, NullPart,
+    OutputError, OutputTest, Parameter, RecordResult, RecordSummary, Subject, UnmodelledTerm,
+    Verdict,
 };
+use gyrocal_statistics::format::{estimate, p_value, significant};
+use gyrocal_statistics::math::{exp, ln};
 
 /// Gain on a later record, nats, below which nothing is said of it.
 const LEAST_GAIN: f64 = 3.0;
 
-/// A remainder rarer than this is told.
+/// Probability of correlation below which what is left of an output is told, and is not white.
 const RARE: f64 = 0.001;
 
-fn list(names: &[String]) -> String {
-    names.join(", ")
+/// Probability of a cause outside of the catalogue from which on it is told.
+const LEAST_NONE: f64 = 0.05;
+
+/// The answer in sentences, the verdict first.
+#[must_use]
+pub fn all(answer: &Answer) -> Vec<String> {
+    let facts = facts(answer).into_iter().map(|(_, words)| words);
+    core::iter::once(verdict(answer)).chain(facts).collect()
 }
 
-impl Diagnosis {
-    /// The answer in sentences, the verdict first.
-    #[must_use]
-    pub fn sentences(&self) -> Vec<String> {
-        let verdict = core::iter::once(self.verdict());
-        let facts = self.facts().into_iter().map(|(_, words)| words);
-        verdict.chain(facts).collect()
-    }
-
-    /// What the answer says after the verdict: sentences with what they are about.
-    #[must_use]
-    pub fn facts(&self) -> Vec<(&'static str, String)> {
-        let mut all = Vec::new();
-        let found = self.findings.iter();
-        all.extend(found.map(|one| ("effect", one.sentence())));
-        let unexplained = self.unexplained.iter();
-        all.extend(unexplained.map(|one| ("unexplained", one.sentence())));
-        all.extend(
-            self.records
-                .iter()
-                .map(|one| ("record", one.sentence(self.has_findings()))),
+/// What the answer says after the verdict: sentences with what they are about.
+#[must_use]
+pub fn facts(answer: &Answer) -> Vec<(&'static str, String)> {
+    let has = answer.has_findings();
+    let mut all = Vec::new();
+    let found = answer.findings.iter();
+    all.extend(found.map(|one| ("effect", finding(one))));
+    let terms = answer.remainder.unmodelled.iter();
+    all.extend(terms.map(|one| ("unexplained", unmodelled(one))));
+    let records = answer.records.iter();
+    all.extend(records.map(|one| ("record", record(one, has))));
+    let horizon = over(answer.horizon_s);
+    all.extend(answer.open_loop.iter().map(|error| {
+        let off = off(error, has);
+        ("open loop", format!("Simulated{horizon}, output {off}."))
+    }));
+    all.extend(answer.gain.iter().map(|gain| ("parts", parts(gain))));
+    all.extend(later_record(answer).map(|words| ("later record", words)));
+    let tests = answer.remainder.outputs.iter();
+    let rare = tests.filter(|one| is_coloured(one));
+    all.extend(rare.map(|one| ("remainder", coloured(one))));
+    let undetermined = answer.undetermined.iter();
+    all.extend(undetermined.map(|one| ("undetermined", direction(one))));
+    if !answer.still_inputs.is_empty() {
+        let words = format!(
+            "Input {} never moves in this record: nothing that depends on it can be told from a \
+             constant. Move it.",
+            answer.still_inputs.join(", ")
         );
-        all.extend(self.errors.iter().map(|error| {
-            let words = format!(
-                "Simulated over {} s, output {} is off by {} {} rms with the nominal model{}.",
-                significant(self.horizon_s, 4),
-                error.output,
-                significant(error.nominal, 3),
-                error.unit,
-                with_findings(error, self.has_findings()),
-            );
-            ("open loop", words)
-        }));
-        if let Some(parts) = &self.cross_validation {
-            all.push(("parts", parts.sentence()));
-        }
-        if let Some(later) = &self.later_record {
-            all.push(("later record", later.sentence(self.has_findings())));
-        }
-        let coloured = self.remainder.iter().filter(|one| one.p_value < RARE);
-        all.extend(coloured.map(|one| {
-            let words = format!(
-                "What is left of output {} is not white noise ({}): the model still lacks something, or \
-                 the noise is coloured. Significances rest on white noise, take them as too good.",
-                one.output,
-                p_value(one.p_value)
-            );
-            ("remainder", words)
-        }));
-        let undetermined = self.undetermined.iter();
-        all.extend(undetermined.map(|one| ("undetermined", sentence(&one.sentence()))));
-        if !self.still_inputs.is_empty() {
-            let words = format!(
-                "Input {} never moves in this record: nothing that depends on it can be told from a \
-                 constant. Move it.",
-                list(&self.still_inputs)
-            );
-            all.push(("inputs", words));
-        }
-        let next = self.next_runs.iter();
-        all.extend(next.map(|one| ("next run", one.sentence())));
-        all
+        all.push(("inputs", words));
     }
+    let next = answer.next_runs.iter();
+    all.extend(next.map(|one| ("next run", next_run(one))));
+    all
+}
 
-    /// Whether anything is found that the model lacks.
-    #[must_use]
-    pub fn has_findings(&self) -> bool {
-        !(self.findings.is_empty() && self.unexplained.is_empty())
-    }
-
-    /// The verdict, a sentence.
-    #[must_use]
-    pub fn verdict(&self) -> String {
-        let (rows, tested) = (self.rows, self.tested);
-        let names: Vec<String> = self.findings.iter().map(|one| one.effect.clone()).collect();
-        match names.len() {
-            0 if self.unexplained.is_empty() => {
-                let of_records = match self.records.len() {
-                    0 => String::new(),
-                    count => format!(" of {count} records"),
-                };
-                format!(
-                    "Nothing is found that {} lacks: {tested} effects were tested on {rows} rows{of_records}.",
-                    self.plant
-                )
+/// The verdict, a sentence.
+#[must_use]
+pub fn verdict(answer: &Answer) -> String {
+    let plant = match &answer.subject {
+        Subject::Plant(name) => name,
+        _ => "The plant",
+    };
+    let names: Vec<&str> = answer.findings.iter().map(|one| &*one.effect).collect();
+    let all = names.join(", ");
+    match answer.verdict {
+        Verdict::NotSettled => {
+            let mut why = Vec::new();
+            if !answer.search_complete {
+                why.push("the search ended at its budget of work");
             }
-            0 => format!(
-                "{} lacks something that its catalogue has no term for.",
-                self.plant
-            ),
-            1 => format!("{} lacks one effect: {}.", self.plant, names[0]),
-            count => format!("{} lacks {count} effects: {}.", self.plant, list(&names)),
+            if !answer.remainder.unmodelled.is_empty() {
+                why.push("it lacks something that its catalogue has no term for");
+            }
+            if answer.remainder.outputs.iter().any(is_coloured) {
+                why.push("what is left is not white noise");
+            }
+            let found = if names.is_empty() {
+                "nothing"
+            } else {
+                all.as_str()
+            };
+            let why = why.join(", and ");
+            format!("What {plant} lacks is not settled: {why}. Found so far: {found}.")
         }
+        Verdict::Unexplained if answer.has_findings() => {
+            format!("{plant} lacks something that its catalogue has no term for.")
+        }
+        Verdict::Unexplained => {
+            format!("No effect is found that {plant} lacks, but what is left is not white noise.")
+        }
+        _ if names.is_empty() => {
+            let of_records = match answer.records.len() {
+                0 => String::new(),
+                count => format!(" of {count} records"),
+            };
+            let (tested, rows) = (answer.ranking.len(), answer.record.rows);
+            format!(
+                "Nothing is found that {plant} lacks: {tested} effects were tested on {rows} rows{of_records}."
+            )
+        }
+        _ => match names.len() {
+            1 => format!("{plant} lacks one effect: {all}."),
+            count => format!("{plant} lacks {count} effects: {all}."),
+        },
     }
 }
 
-fn with_findings(error: &OutputError, has: bool) -> String {
-    if !has {
-        return String::new();
+/// An effect with its size, significance and set, a sentence or more.
+#[must_use]
+pub fn finding(found: &Finding) -> String {
+    let mut sizes: Vec<String> = found.parameters.iter().map(parameter).collect();
+    sizes.extend(found.in_record.map(|record| format!("in record {record}")));
+    let mut text = format!(
+        "{} ({}): {}; {} standard deviations, {}.",
+        found.effect,
+        found.name,
+        sizes.join(", "),
+        significant(found.z, 3),
+        probability(found),
+    );
+    let rivals = found.of_kind(AlternativeKind::NotExcluded);
+    let rivals: Vec<String> = rivals
+        .map(|other| format!("{} ({})", other.effect, likelihood(other)))
+        .collect();
+    if rivals.is_empty() {
+        text += " Its set has no other effect.";
+    } else {
+        text += &format!(" The cause may also be {}.", rivals.join(", "));
     }
-    format!(
-        " and by {} {} with what was found",
-        significant(error.extended, 3),
-        error.unit
+    let equivalents: Vec<&str> = found.equivalents().collect();
+    if !equivalents.is_empty() {
+        text += &format!(" No record tells it from {}.", equivalents.join(", "));
+    }
+    if let Some(none) = found.none_of_these.filter(|none| *none > LEAST_NONE) {
+        text += &format!(
+            " With a probability of {} % the cause is outside of the catalogue.",
+            significant(100.0 * none, 2)
+        );
+    }
+    text
+}
+
+/// How likely an alternative is beside the named effect.
+#[must_use]
+pub fn likelihood(other: &Alternative) -> String {
+    other.log_likelihood_deficit.map_or_else(
+        || "not searched".to_owned(),
+        |nats| format!("{nats:.1} nats less likely"),
     )
 }
 
-fn sentence(words: &str) -> String {
-    let mut letters = words.chars();
-    let first = letters
-        .next()
-        .map(|letter| letter.to_uppercase().to_string());
-    first.unwrap_or_default() + letters.as_str() + "."
+/// The p-value of a finding.
+#[must_use]
+pub fn probability(found: &Finding) -> String {
+    let none = || "p not computed for the final model".to_owned();
+    found.p_value.map_or_else(none, p_value)
 }
 
-impl RecordAnswer {
-    fn sentence(&self, has: bool) -> String {
-        let errors: Vec<String> = self
-            .errors
-            .iter()
-            .map(|error| {
-                format!(
-                    "{} is off by {} {} rms with the nominal model{}",
-                    error.output,
-                    significant(error.nominal, 3),
-                    error.unit,
-                    with_findings(error, has)
-                )
-            })
-            .collect();
-        format!(
-            "{}, {} rows: output {}. Alone: {}",
-            self.name,
-            self.rows,
-            errors.join(", "),
-            self.alone.verdict
-        )
+/// A size or an onset: name, value, standard deviation and unit.
+#[must_use]
+pub fn parameter(one: &Parameter) -> String {
+    let unit = if one.unit == "1" { "" } else { &one.unit };
+    let value = match one.sigma {
+        Some(sigma) => estimate(one.estimate, sigma).join(" ± "),
+        None => significant(one.estimate, 4),
+    };
+    let text = format!("{} {value} {unit}", one.name);
+    text.trim_end().to_owned()
+}
+
+/// A term outside of the catalogue.
+#[must_use]
+pub fn unmodelled(one: &UnmodelledTerm) -> String {
+    let form = match (one.period_h, &one.depends_on) {
+        (Some(period_h), _) => format!("a line with a period of {:.4} s", 3600.0 * period_h),
+        (None, variable) => format!(
+            "a function of {} that is in no term of the catalogue",
+            variable.as_deref().unwrap_or("time")
+        ),
+    };
+    format!(
+        "In {}: {form}, {} {} ({}).",
+        one.channel,
+        significant(one.size, 3),
+        one.unit,
+        p_value(one.p_value)
+    )
+}
+
+/// Whether what is left of an output is not white.
+pub(crate) fn is_coloured(one: &OutputTest) -> bool {
+    one.p_value < RARE
+}
+
+/// That in words.
+pub(crate) fn coloured(one: &OutputTest) -> String {
+    format!(
+        "What is left of output {} is not white noise ({}): the model still lacks something, or the noise is \
+         coloured. Significances rest on white noise, take them as too good.",
+        one.output,
+        p_value(one.p_value)
+    )
+}
+
+/// What no record, or this one, does not determine.
+#[must_use]
+pub fn direction(one: &NullDirection) -> String {
+    let part = |part: &NullPart| {
+        let sign = if part.change < 0.0 { "−" } else { "+" };
+        let unit = if part.is_share { " %" } else { "" };
+        let size = significant(part.change.abs(), 3);
+        format!("{} by {sign}{size}{unit}", part.name)
+    };
+    let parts: Vec<String> = one.parts.iter().map(part).collect();
+    let parts = parts.join(", ");
+    let held = one.held.as_ref().map_or_else(String::new, |held| {
+        format!("; {held} is held at its declared value")
+    });
+    if one.is_gauge {
+        format!("No record of this plant shows a change of {parts} together{held}.")
+    } else {
+        format!("This record does not show a change of {parts}{held}: with another input it would.")
     }
 }
 
-impl Found {
-    /// The effect with its size, significance and set, a sentence or more.
-    #[must_use]
-    pub fn sentence(&self) -> String {
-        let mut sizes: Vec<String> = self.sizes.iter().map(Size::words).collect();
-        sizes.extend(self.record.map(|record| format!("in record {record}")));
-        let mut text = format!(
-            "{} ({}): {}; {} standard deviations, {}.",
-            self.effect,
-            self.name,
-            sizes.join(", "),
-            significant(self.z, 3),
-            p_value(self.p_value),
-        );
-        if self.rivals.is_empty() {
-            text += " Its set has no other effect.";
-        } else {
-            let rivals: Vec<String> = self
-                .rivals
-                .iter()
-                .map(|(id, deficit)| format!("{id} ({deficit:.1} nats less likely)"))
-                .collect();
-            text += &format!(" The cause may also be {}.", rivals.join(", "));
-        }
-        if !self.equivalents.is_empty() {
-            text += &format!(" No record tells it from {}.", list(&self.equivalents));
-        }
-        if let Some(none) = self.none_of_these.filter(|none| *none > 0.05) {
-            text += &format!(
-                " With a probability of {} % the cause is outside of the catalogue.",
-                significant(100.0 * none, 2)
-            );
-        }
-        text
-    }
+/// An error of a simulation; that of one that leaves the finite numbers is infinite.
+fn rms(error: Option<f64>) -> String {
+    error.map_or_else(|| "∞".to_owned(), |rms| significant(rms, 3))
 }
 
-impl Size {
-    /// Name, value, standard deviation and unit.
-    #[must_use]
-    pub fn words(&self) -> String {
-        let unit = if self.unit == "1" { "" } else { &self.unit };
-        let value = match self.sigma {
-            Some(sigma) => gyrocal_statistics::format::estimate(self.value, sigma).join(" ± "),
-            None => significant(self.value, 4),
-        };
-        let text = format!("{} {value} {unit}", self.name);
-        text.trim_end().to_owned()
+/// An error of simulations in words; `has` tells whether anything was found.
+fn off(error: &OutputError, has: bool) -> String {
+    let (unit, nominal) = (&error.unit, rms(error.nominal));
+    let mut text = format!(
+        "{} is off by {nominal} {unit} rms with the nominal model",
+        error.output
+    );
+    if has {
+        let extended = rms(error.extended);
+        text += &format!(" and by {extended} {unit} with what was found");
     }
+    text
 }
 
-impl Unexplained {
-    /// A sentence.
-    #[must_use]
-    pub fn sentence(&self) -> String {
-        format!(
-            "In {}: {}, {} {} (ln p {:.0}).",
-            self.channel,
-            self.form,
-            significant(self.size, 3),
-            self.unit,
-            self.ln_p_value
-        )
-    }
+/// The horizon of simulations.
+fn over(horizon_s: Option<f64>) -> String {
+    horizon_s.map_or_else(String::new, |s| format!(" over {} s", significant(s, 4)))
+}
+
+fn record(one: &RecordResult, has: bool) -> String {
+    let errors: Vec<String> = one.open_loop.iter().map(|error| off(error, has)).collect();
+    format!(
+        "{}, {} rows: output {}. Alone: {}",
+        one.name,
+        one.record.rows,
+        errors.join(", "),
+        alone(one)
+    )
+}
+
+/// The verdict of one of several records alone, or why it has none.
+#[must_use]
+pub fn alone(one: &RecordResult) -> String {
+    let none = || format!("not diagnosed, {}.", one.why_not_alone);
+    one.alone.as_ref().map_or_else(none, verdict)
 }
 
 /// What a gain says of what was found; `tells` are the words for what is left open.
@@ -234,90 +283,80 @@ fn judged(gain_nats: f64, tells: &str) -> String {
     }
 }
 
-impl CrossValidation {
-    /// Sum over the parts that can be predicted, nats.
-    #[must_use]
-    pub fn gain_nats(&self) -> f64 {
-        self.gains_nats.iter().flatten().sum()
+/// The gain in parts that are predicted from the others.
+#[must_use]
+pub fn parts(gain: &Gain) -> String {
+    let blocks = &gain.block_log_score_nats;
+    let parts = blocks.len();
+    let alone = blocks.iter().filter(|block| block.is_none()).count();
+    if alone == parts {
+        return format!("Without any of {parts} parts the others do not determine what was found.");
     }
-
-    /// The gain in words.
-    #[must_use]
-    pub fn sentence(&self) -> String {
-        let parts = self.gains_nats.len();
-        let alone = self.gains_nats.iter().filter(|gain| gain.is_none()).count();
-        if alone == parts {
-            return format!(
-                "Without any of {parts} parts the others do not determine what was found."
-            );
-        }
-        let gain = self.gain_nats();
-        let words = format!(
-            "Each of {parts} parts predicted from the others, the gain is {gain:.1} nats: {}.",
-            judged(gain, "they tell")
-        );
-        match alone {
-            0 => words,
-            1 => format!("{words} One part is left out: only there is shown what was found."),
-            more => format!("{words} {more} parts are left out: only they show what was found."),
-        }
+    let nats = gain.cross_validated_log_score_nats;
+    let words = format!(
+        "Each of {parts} parts predicted from the others, the gain is {nats:.1} nats: {}.",
+        judged(nats, "they tell")
+    );
+    match alone {
+        0 => words,
+        1 => format!("{words} One part is left out: only there is shown what was found."),
+        more => format!("{words} {more} parts are left out: only they show what was found."),
     }
 }
 
-impl NextRun {
-    /// The forecast, a sentence or two.
-    #[must_use]
-    pub fn sentence(&self) -> String {
-        let told = self.told_apart.iter().map(|one| {
-            format!(
-                " It tells {} from {} with a probability of {} % ({} standard deviations apart, now {}).",
-                one.effect,
-                one.rival,
-                significant(100.0 * one.probability, 2),
-                significant(one.after, 2),
-                significant(one.now, 2),
-            )
-        });
-        format!(
-            "{} ({} rows, {} s) brings standard deviations to {} of what they are (geometric mean).{}",
-            self.name,
-            self.rows,
-            significant(self.duration_s, 4),
-            significant(self.mean_ratio(), 2),
-            told.collect::<String>()
-        )
-    }
+/// The gain on the later record; `None` without one.
+#[must_use]
+pub fn later_record(answer: &Answer) -> Option<String> {
+    let RecordSummary { rows, .. } = answer.later_record?;
+    let gain = answer.gain.as_ref();
+    let Some(later) = gain.and_then(|gain| gain.validation.as_ref()) else {
+        let none = "Nothing was found, so there is no gain on the second record to be measured.";
+        return Some(none.to_owned());
+    };
+    let errors: Vec<String> = later
+        .open_loop
+        .iter()
+        .map(|error| {
+            let [nominal, extended] = [error.nominal, error.extended].map(rms);
+            let (output, unit) = (&error.output, &error.unit);
+            format!("output {output} is off by {extended} instead of {nominal} {unit} rms")
+        })
+        .collect();
+    let nats = later.log_score_nats;
+    Some(format!(
+        "On the second record ({rows} rows), predicted with the parameters of the first, the gain is {nats:.1} \
+         nats: {}. Simulated{}, {}.",
+        judged(nats, "the second record tells"),
+        over(later.horizon_s),
+        errors.join(", ")
+    ))
 }
 
-impl Comparison {
-    /// The gain in words; `has` tells whether anything was found.
-    #[must_use]
-    pub fn sentence(&self, has: bool) -> String {
-        if !has {
-            return "Nothing was found, so there is no gain on the second record to be measured."
-                .to_owned();
-        }
-        let errors: Vec<String> = self
-            .errors
-            .iter()
-            .map(|error| {
-                format!(
-                    "output {} is off by {} instead of {} {} rms",
-                    error.output,
-                    significant(error.extended, 3),
-                    significant(error.nominal, 3),
-                    error.unit
-                )
-            })
-            .collect();
-        let judged = judged(self.gain_nats, "the second record tells");
+/// The forecast of a run, a sentence or two.
+fn next_run(run: &NextRun) -> String {
+    let told = run.told_apart.iter().map(|one| {
         format!(
-            "On the second record ({} rows), predicted with the parameters of the first, the gain is {:.1} \
-             nats: {judged}. Simulated over {} s, {}.",
-            self.rows,
-            self.gain_nats,
-            significant(self.horizon_s, 4),
-            errors.join(", ")
+            " It tells {} from {} with a probability of {} % ({} standard deviations apart, now {}).",
+            one.effect,
+            one.alternative,
+            significant(100.0 * one.probability, 2),
+            significant(one.after, 2),
+            significant(one.now, 2),
         )
-    }
+    });
+    format!(
+        "{} ({} rows, {} s) brings standard deviations to {} of what they are (geometric mean).{}",
+        run.name,
+        run.rows,
+        significant(run.duration_s, 4),
+        significant(mean_ratio(run), 2),
+        told.collect::<String>()
+    )
+}
+
+/// Geometric mean of the standard deviations after a run over those before.
+#[must_use]
+pub fn mean_ratio(run: &NextRun) -> f64 {
+    let ratios = run.sigmas.iter().map(|one| ln(one.after / one.now));
+    exp(ratios.sum::<f64>() / run.sigmas.len().max(1) as f64)
 }

@@ -2,13 +2,15 @@
 
 use std::collections::HashMap;
 
+use gyrocal_answer::RecordResult;
 use gyrocal_hypothesis::{FittedModel as _, SearchOptions};
 
-use crate::answer::{Alone, Estimate, RecordAnswer};
+use crate::answer::{coefficients, summary};
 use crate::diagnosed::Diagnosed;
-use crate::diagnosis::{diagnose, diagnose_from, errors};
+use crate::diagnosis::{diagnose, diagnose_from};
 use crate::error::PlantError;
 use crate::loaded::LoadedPlant;
+use crate::prediction::errors;
 use crate::record::PlantRecord;
 
 /// Consecutive rows with equal values that show that two records share them.
@@ -65,7 +67,7 @@ pub fn diagnose_records(
     let start = start(plant, &alone);
     let record = PlantRecord::joined(&parts);
     let mut together = diagnose_from(plant, record, later, options, start.as_deref())?;
-    together.answer.records = answers(plant, &together, &records, &alone);
+    together.answer.records = results(plant, &together, &records, &alone);
     Ok(DiagnosedRecords { together, alone })
 }
 
@@ -86,12 +88,12 @@ fn start(plant: &LoadedPlant, alone: &[Result<Diagnosed, PlantError>]) -> Option
     Some(start)
 }
 
-fn answers(
+fn results(
     plant: &LoadedPlant,
     together: &Diagnosed,
     records: &[NamedRecord],
     alone: &[Result<Diagnosed, PlantError>],
-) -> Vec<RecordAnswer> {
+) -> Vec<RecordResult> {
     let (nominal, fitted) = (&together.searched.nominal, &together.searched.fitted);
     let joined = fitted.record();
     let simulated = (nominal.simulated(), fitted.simulated());
@@ -100,36 +102,22 @@ fn answers(
     let rows = joined.records().zip(records.iter().zip(alone));
     rows.map(|(rows, (one, alone))| {
         let (nominal, extended) = initial.next().unwrap_or_default();
-        let states = plant
-            .description
-            .states
-            .iter()
-            .zip(nominal.iter().zip(extended));
-        RecordAnswer {
+        let states = plant.description.states.iter();
+        let states = states.zip(nominal.into_iter().zip(extended));
+        let states = states.map(|(state, (nominal, extended))| {
+            let name = format!("initial {}", state.id);
+            (name, state.unit.clone(), state.initial, [nominal, extended])
+        });
+        RecordResult {
             name: one.name.clone(),
-            rows: rows.len(),
-            duration_s: one.record.duration_s(),
-            initial: states
-                .map(|(state, (nominal, extended))| Estimate {
-                    name: format!("initial {}", state.id),
-                    unit: state.unit.clone(),
-                    declared: state.initial,
-                    nominal: nominal[0],
-                    nominal_sigma: nominal[1],
-                    value: extended[0],
-                    sigma: extended[1],
-                })
-                .collect(),
-            errors: errors(plant, joined, (&simulated.0, &simulated.1), rows),
-            alone: match alone {
-                Ok(alone) => Alone {
-                    verdict: alone.answer.verdict(),
-                    findings: alone.answer.findings.clone(),
-                },
-                Err(reason) => Alone {
-                    verdict: format!("not diagnosed, {reason}."),
-                    findings: Vec::new(),
-                },
+            record: summary(&one.record),
+            turn_on_deg_per_h: None,
+            initial: Some(coefficients(states, together.answer.has_findings())),
+            open_loop: errors(plant, joined, (&simulated.0, &simulated.1), rows),
+            alone: alone.as_ref().ok().map(|alone| alone.answer.clone()),
+            why_not_alone: match alone {
+                Ok(_) => String::new(),
+                Err(reason) => reason.to_string(),
             },
         }
     })

@@ -5,6 +5,7 @@
 //! noise falls until none is left. This is repeated from random parameters until two starts end at the
 //! same best fit.
 
+use gyrocal_answer::Starts;
 use gyrocal_hypothesis::ModelExtension;
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_statistics::math::exp;
@@ -46,16 +47,6 @@ const MOST_SENSITIVE: usize = 4;
 
 /// Most Runge-Kutta steps between rows.
 const MOST_SUBSTEPS: usize = 64;
-
-/// How the best fit was found.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Starts {
-    /// Starts that were tried.
-    pub tried: usize,
-    /// Starts that ended at the best fit.
-    pub agreeing: usize,
-}
 
 /// The best fit of the nominal model.
 pub(crate) fn best(

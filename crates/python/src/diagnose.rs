@@ -1,11 +1,12 @@
 //! Diagnosis of a record.
 
 use gyrocal::generated::MODEL_HASH;
+use gyrocal_answer::Answer;
 use gyrocal_calibration::{CalibrationError, Run};
 use gyrocal_cli::NotDiagnosed;
 use gyrocal_diagnosis::{
-    DiagnoseOptions, Diagnosis, DiagnosisError, DiagnosisResult, FILTER_EFFECT, Gate, TestedFilter,
-    diagnose_gated, prose,
+    DiagnoseOptions, Diagnosis, DiagnosisError, FILTER_EFFECT, Gate, TestedFilter, diagnose_gated,
+    prose,
 };
 use gyrocal_record::InputRole;
 use gyrocal_setup::PlatformKind;
@@ -14,7 +15,7 @@ use pyo3::prelude::*;
 use crate::axes::{Axes, GivenAxes};
 use crate::bench::HeldBench;
 use crate::error::{Failure, Outcome};
-use crate::origin::{json, manifest};
+use crate::origin::{answer_text, json, manifest};
 use crate::record::HeldRecord;
 
 /// A record with its bench description.
@@ -62,7 +63,7 @@ impl<'a> Given<'a> {
 }
 
 /// The result (JSON), and its sentences and tables (JSON).
-pub(crate) type Answer = (String, String);
+pub(crate) type Texts = (String, String);
 
 /// The same with the scores of the record as bytes, of a record that was searched.
 pub(crate) type Scored = (String, String, Option<Vec<u8>>);
@@ -153,7 +154,7 @@ fn answer(
     }
     result.manifest = manifest(MODEL_HASH, options.seed, inputs, command);
     let blocks = json(&prose::diagnosis(&result))?;
-    Ok((json(&result)?, blocks, scores))
+    Ok((answer_text(&result)?, blocks, scores))
 }
 
 /// The result and the scores. A gross error of the set-up is an answer too.
@@ -161,7 +162,7 @@ fn result(
     given: Given<'_>,
     later: Option<Given<'_>>,
     options: &DiagnoseOptions,
-) -> Outcome<(DiagnosisResult, Option<Vec<u8>>)> {
+) -> Outcome<(Answer, Option<Vec<u8>>)> {
     if options.filter.is_some() && given.bench.bench.initial_angles_deg.is_none() {
         return Err(given.no_diagnosis(CalibrationError::NoAttitude.into()));
     }

@@ -6,7 +6,7 @@ use gyrocal_fleet::{
 };
 use pyo3::prelude::*;
 
-use crate::diagnose::Answer;
+use crate::diagnose::Texts;
 use crate::error::{Failure, Outcome};
 use crate::origin::{json, manifest};
 
@@ -53,7 +53,7 @@ pub(crate) fn summarise_fleet(
     outlier_probability: f64,
     seed: u64,
     command: &str,
-) -> PyResult<Answer> {
+) -> PyResult<Texts> {
     let options = FleetOptions {
         false_discovery_rate,
         group_probability,
@@ -63,7 +63,7 @@ pub(crate) fn summarise_fleet(
     Ok(py.detach(|| answer(records, &options, command))?)
 }
 
-fn answer(records: Vec<Diagnosed>, options: &FleetOptions, command: &str) -> Outcome<Answer> {
+fn answer(records: Vec<Diagnosed>, options: &FleetOptions, command: &str) -> Outcome<Texts> {
     let mut read = Vec::with_capacity(records.len());
     let mut problems = Vec::new();
     for one in records {

@@ -1,5 +1,6 @@
 //! The origin of a result, and its text.
 
+use gyrocal_answer::{Answer, write_text};
 use gyrocal_record::{Input, Manifest};
 use serde::Serialize;
 
@@ -15,6 +16,14 @@ pub(crate) fn manifest(model_hash: &str, seed: u64, inputs: Vec<Input>, command:
         seed,
         command: command.to_owned(),
     }
+}
+
+/// The text of an answer; one with a number that is not finite is refused.
+pub(crate) fn answer_text(answer: &Answer) -> Outcome<String> {
+    write_text(answer).map_err(|error| Failure {
+        message: error.to_string(),
+        ..Failure::default()
+    })
 }
 
 /// The text of a result.

@@ -3,18 +3,19 @@
 use std::borrow::Cow;
 
 use gyrocal::generated::MODEL_HASH;
+use gyrocal_answer::Answer;
 use gyrocal_calibration::{FittedPlatform, Options, Run};
 use gyrocal_cli::NotPlanned;
 use gyrocal_design::{
     Aim, DesignError, Goal, NamedCause, PlanOptions, noise_of, plan as design, prose,
 };
-use gyrocal_diagnosis::{DiagnosisResult, diagnose_gated};
+use gyrocal_diagnosis::diagnose_gated;
 use gyrocal_record::{AXES, GimbalLimits, InputRole, Record, SetupProblem, SourceText};
 use pyo3::prelude::*;
 
 use crate::axes::{Axes, GivenAxes};
 use crate::bench::HeldBench;
-use crate::diagnose::{Answer, Given, options};
+use crate::diagnose::{Given, Texts, options};
 use crate::error::{Failure, Outcome};
 use crate::origin::{json, manifest};
 use crate::record::HeldRecord;
@@ -49,7 +50,7 @@ pub(crate) fn plan(
     effects: Vec<String>,
     false_alarm: f64,
     command: &str,
-) -> PyResult<Answer> {
+) -> PyResult<Texts> {
     let axes = axes.map(|axes| axes.take("gyro_axes")).transpose()?;
     let given = Given {
         record: record.get(),
@@ -79,7 +80,7 @@ struct Known<'a> {
     named: Vec<NamedCause>,
 }
 
-fn answer(given: Given<'_>, request: &Request, command: &str) -> Outcome<Answer> {
+fn answer(given: Given<'_>, request: &Request, command: &str) -> Outcome<Texts> {
     let known = match &request.diagnosis {
         Some(diagnosis) => written(given, diagnosis)?,
         None => made(given, request)?,
@@ -126,7 +127,7 @@ fn made<'a>(given: Given<'a>, request: &Request) -> Outcome<Known<'a>> {
 /// Takes a diagnosis of the record.
 fn written<'a>(given: Given<'a>, diagnosis: &str) -> Outcome<Known<'a>> {
     let source = SourceText::new(diagnosis, "diagnosis")?;
-    let diagnosis = gyrocal_diagnosis::result::read_text(&source)?;
+    let diagnosis = gyrocal_answer::read_platform_text(&source)?;
     refuse(given, &diagnosis)?;
     check_inputs(given, &diagnosis)?;
     let named = NamedCause::all(&diagnosis);
@@ -155,7 +156,7 @@ fn written<'a>(given: Given<'a>, diagnosis: &str) -> Outcome<Known<'a>> {
 }
 
 /// Refuses a diagnosis of several records, and one with axes where none are given, or without.
-fn refuse(given: Given<'_>, diagnosis: &DiagnosisResult) -> Outcome<()> {
+fn refuse(given: Given<'_>, diagnosis: &Answer) -> Outcome<()> {
     if !diagnosis.records.is_empty() {
         return Err(Failure::of_value(
             "diagnosis",
@@ -164,7 +165,7 @@ fn refuse(given: Given<'_>, diagnosis: &DiagnosisResult) -> Outcome<()> {
             "the command plans after several: gyrocal plan --diagnosis",
         ));
     }
-    match (diagnosis.strapdown, given.axes) {
+    match (diagnosis.is_strapdown(), given.axes) {
         (true, None) => Err(Failure::of_value(
             "diagnosis",
             "that of a strapdown unit, with gyro_axes",
@@ -182,7 +183,7 @@ fn refuse(given: Given<'_>, diagnosis: &DiagnosisResult) -> Outcome<()> {
 }
 
 /// A diagnosis is of the record, the bench description and the axes that are given.
-fn check_inputs(given: Given<'_>, diagnosis: &DiagnosisResult) -> Outcome<()> {
+fn check_inputs(given: Given<'_>, diagnosis: &Answer) -> Outcome<()> {
     let inputs = &diagnosis.manifest.inputs;
     let mut pairs = vec![
         (given.record.input.clone(), inputs.first()),

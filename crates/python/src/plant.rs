@@ -2,15 +2,14 @@
 
 use std::path::Path;
 
-use gyrocal_instruments::ResultFile;
 use gyrocal_pages::{Part, of_plant};
-use gyrocal_plant::{LoadedPlant, PlantError, PlantRecord, SearchOptions, diagnose};
+use gyrocal_plant::{LoadedPlant, PlantError, PlantRecord, SearchOptions, diagnose, sentences};
 use gyrocal_record::{Input, Manifest, printable_path};
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
 
 use crate::error::{Class, Failure, Outcome};
-use crate::origin::{json, manifest};
+use crate::origin::{answer_text, json, manifest};
 
 /// A plant that is ready to be fitted.
 #[pyclass(frozen, name = "Plant", module = "gyrocal._gyrocal")]
@@ -168,10 +167,11 @@ impl HeldPlant {
         let name = printable_path(path.file_name().map_or(path, Path::new));
         let record = self.record(record)?;
         let later = later.map(|later| self.record(later)).transpose()?;
-        let diagnosed = diagnose(&self.plant, record, later, options)?;
+        let mut diagnosed = diagnose(&self.plant, record, later, options)?;
         let part = of_plant(&diagnosed, &name, &manifest).map_err(|error| Failure::of_text(&error));
-        let sentences = json(&diagnosed.answer.sentences())?;
-        let result = json(&ResultFile::new(manifest, diagnosed.answer))?;
+        diagnosed.answer.manifest = manifest;
+        let sentences = json(&sentences::all(&diagnosed.answer))?;
+        let result = answer_text(&diagnosed.answer)?;
         Ok((result, sentences, HeldPage { part }))
     }
 

@@ -1,7 +1,7 @@
 //! Pages of results.
 
+use gyrocal_answer::read_text;
 use gyrocal_design::PlanResult;
-use gyrocal_diagnosis::result::read_text;
 use gyrocal_fleet::FleetResult;
 use gyrocal_pages::{Part, of_calibration, of_fleet, of_plan, of_result, page};
 use gyrocal_record::{CalibrationReport, SourceText};

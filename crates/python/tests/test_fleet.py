@@ -82,7 +82,7 @@ def test_results_do_not_depend_on_batches_and_order(records, expected):
     # Half a day shows the fault; its name takes longer.
     for record, verdict in zip(table["record"], table["verdict"]):
         has_fault = int(record.split("-")[1]) % FAULT_EVERY == 0
-        assert verdict == ("effects-found" if has_fault else "clean"), record
+        assert verdict in (("effects-found", "not-settled") if has_fault else ("clean",)), record
 
 
 def test_a_row_is_the_result_of_its_record(records, expected):

@@ -37,7 +37,7 @@ def test_numbers_and_names_are_those_of_the_command(tmp_path, found):
     assert len(found.findings) == 1
     frame = found.to_dataframe()
     assert list(frame.effect) == [found.findings[0].effect]
-    assert frame["size"][0] == found.findings[0].sizes[0].value
+    assert frame["size"][0] == found.findings[0].parameters[0].estimate
     assert found.findings[0].effect in repr(found)
     assert "<p>" in found._repr_html_()
     assert pickle.loads(pickle.dumps(found)) == found
@@ -56,7 +56,7 @@ def test_a_declared_plant_takes_frames(found):
     assert again.manifest.inputs[2].sha256 == found.manifest.inputs[2].sha256
     # A later record is another frame.
     later = plant.diagnose(frame, COLUMNS, later=pd.read_csv(FOLDER / "later.csv"), false_alarm=0.02)
-    assert later.later_record.gain_nats == found.later_record.gain_nats
+    assert later.gain.validation.log_score_nats == found.gain.validation.log_score_nats
     assert later.manifest.command == (
         "gyrocal.Plant.diagnose(<DataFrame>, <dict>, later=<DataFrame>, false_alarm=0.02)"
     )

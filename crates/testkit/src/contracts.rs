@@ -27,7 +27,7 @@ const CONTRACTS: [(&str, &str, &[&str]); 14] = [
     ("import strapdown", "import", &[LOG, "--out %record.csv"]),
     ("monte-carlo", "monte-carlo", &["@examples/data/three_days.scenario.toml --seeds 0..2"]),
     ("plan", "plan", &[FAULT, "--diagnosis %diagnose.json"]),
-    ("plant diagnose", "plant-diagnosis", &["@examples/duffing/plant.json @examples/duffing/record.csv",
+    ("plant diagnose", "diagnosis", &["@examples/duffing/plant.json @examples/duffing/record.csv",
         "--columns @examples/duffing/columns.toml --validate @examples/duffing/later.csv"]),
     ("rates", "rates", &[LOG]),
     ("report", "uncertainty", &[FAULT, "--uncertainty --out %report.html"]),

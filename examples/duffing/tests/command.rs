@@ -44,9 +44,9 @@ fn the_command_of_the_package_gives_the_answer_of_the_library() {
     let found = &answer.answer.findings[0];
     assert_eq!(written["findings"][0]["effect"], found.effect);
     let (value, size) = (
-        &written["findings"][0]["sizes"][0]["value"],
-        &found.sizes[0],
+        &written["findings"][0]["parameters"][0]["estimate"],
+        &found.parameters[0],
     );
     // Interpreted and generated functions differ by rounding.
-    assert!((value.as_f64().unwrap() - size.value).abs() < 1e-6 * size.sigma.unwrap());
+    assert!((value.as_f64().unwrap() - size.estimate).abs() < 1e-6 * size.sigma.unwrap());
 }

@@ -6,8 +6,8 @@ mod residual;
 
 use std::path::Path;
 
-use gyrocal_diagnosis::result::FindingKind;
-use gyrocal_diagnosis::{DiagnosisError, Verdict};
+use gyrocal_answer::{FindingKind, Verdict};
+use gyrocal_diagnosis::DiagnosisError;
 use gyrocal_record::Outputs;
 use gyrocal_report::Picture;
 use miette::miette;
@@ -80,7 +80,7 @@ fn listed(ids: &[&str]) -> Option<String> {
 /// Record and verdict, below every title.
 fn subtitle(found: &DiagnosisRun<'_>) -> String {
     let verdict = match found.diagnosis.result.verdict {
-        Verdict::EffectsFound => {
+        Verdict::EffectsFound | Verdict::NotSettled => {
             // The pictures are of the record and not of another filter.
             let findings = found.diagnosis.result.findings.iter();
             let findings = findings.filter(|finding| finding.kind != FindingKind::Filter);

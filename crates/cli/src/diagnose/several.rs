@@ -10,16 +10,16 @@ use gyrocal_report::Picture;
 
 use super::{DiagnoseArguments, NotDiagnosed, exit_code};
 use crate::layout::layout;
-use crate::outputs::manifest_of;
+use crate::outputs::{manifest_of, stage_answer};
 use crate::progress::Progress;
 use crate::records::refuse_shared_rows;
-use crate::{Answer, Failure, gyro_axes, page, pictures};
+use crate::{Failure, Reply, gyro_axes, page, pictures};
 
 /// Runs the command; `inputs` are each record with its bench file.
 pub(super) fn run(
     arguments: &DiagnoseArguments,
     inputs: &[(InputRole, &Path)],
-) -> Result<Answer, Failure> {
+) -> Result<Reply, Failure> {
     refuse_options(arguments)?;
     let benches: Vec<Bench> = arguments
         .pairs()
@@ -61,7 +61,7 @@ pub(super) fn run(
     found.together.result.manifest = manifest_of(MODEL_HASH, options.seed, inputs)?;
     let result = &found.together.result;
     tracing::info!(verdict = ?result.verdict, "diagnosed");
-    let mut answer = Answer::of(
+    let mut answer = Reply::of(
         prose::first_screen(result),
         layout(&prose::diagnosis(result)),
     );
@@ -85,7 +85,7 @@ pub(super) fn run(
         }
     }
     if let Some(path) = &arguments.json {
-        outputs.stage_json(path, result)?;
+        stage_answer(path, result, &mut outputs)?;
         answer.wrote(path, "the result for programs");
     }
     super::stage_tables(arguments, result, &mut outputs, &mut answer)?;

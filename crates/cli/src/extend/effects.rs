@@ -3,8 +3,7 @@
 use gyrocal::effect::{Enters, Role};
 use gyrocal::generated::catalogue::{PARAMETERS, SHAPES};
 use gyrocal::{EFFECTS, Effect};
-use gyrocal_diagnosis::result::Finding;
-use gyrocal_diagnosis::{DiagnosisResult, Verdict};
+use gyrocal_answer::{Answer, Finding, Verdict};
 use gyrocal_record::{
     Gyros, KnownEffect, ModelFile, ParameterEstimate, Standing, any_of, nearest_names,
 };
@@ -47,15 +46,14 @@ fn known_effect(row: &'static Effect) -> KnownEffect<'static> {
 
 /// The diagnosis with members of its confidence sets in the place of the effects that it names.
 pub(super) fn with_members(
-    mut diagnosis: DiagnosisResult,
+    mut diagnosis: Answer,
     members: &[String],
     name: &str,
-) -> Result<DiagnosisResult, Report> {
+) -> Result<Answer, Report> {
     for member in members {
         let others = |finding: &Finding| -> Vec<String> {
-            let alternatives = finding.alternatives.iter().map(|one| one.effect.clone());
-            let equivalents = finding.equivalents.iter().map(|one| one.effect.clone());
-            alternatives.chain(equivalents).collect()
+            let all = finding.alternatives.iter();
+            all.map(|one| one.effect.clone()).collect()
         };
         let mut findings = diagnosis.findings.iter();
         let Some(place) = findings.position(|finding| others(finding).contains(member)) else {
@@ -72,19 +70,18 @@ pub(super) fn with_members(
             ));
         };
         let finding = &mut diagnosis.findings[place];
-        let equivalent = finding.equivalents.iter().find(|one| one.effect == *member);
-        finding.parameters = equivalent.map_or_else(Vec::new, |one| one.parameters.clone());
+        let mut others = core::mem::take(&mut finding.alternatives).into_iter();
+        let own = others.find(|one| one.effect == *member);
+        finding.parameters = own.map_or_else(Vec::new, |one| one.parameters);
         finding.effect.clone_from(member);
-        finding.equivalents.clear();
-        finding.alternatives.clear();
         finding.accepted = Some(true);
     }
     Ok(diagnosis)
 }
 
 /// The model of what a diagnosis found.
-pub(super) fn of_diagnosis(diagnosis: &DiagnosisResult, name: &str) -> Result<Extension, Report> {
-    let gyros = match diagnosis.strapdown {
+pub(super) fn of_diagnosis(diagnosis: &Answer, name: &str) -> Result<Extension, Report> {
+    let gyros = match diagnosis.is_strapdown() {
         true => Gyros::Strapdown,
         false => Gyros::Platform,
     };
@@ -152,9 +149,8 @@ pub(super) fn of_diagnosis(diagnosis: &DiagnosisResult, name: &str) -> Result<Ex
                 }
             }
         }
-        if !finding.equivalents.is_empty() {
-            let others = finding.equivalents.iter();
-            let others = others.map(|other| other.effect.clone()).collect();
+        let others: Vec<String> = finding.equivalents().map(str::to_owned).collect();
+        if !others.is_empty() {
             extension.equivalents.push((finding.effect.clone(), others));
         }
     }
@@ -201,9 +197,13 @@ pub(super) fn of_list(ids: &[String], gyros: Gyros) -> Result<Extension, Report>
     })
 }
 
-fn nothing(diagnosis: &DiagnosisResult, extension: &Extension, name: &str) -> Report {
+fn nothing(diagnosis: &Answer, extension: &Extension, name: &str) -> Report {
     if extension.left_out.is_empty() {
         let (verdict, help) = match diagnosis.verdict {
+            Verdict::NotSettled => (
+                "not-settled",
+                "the search ended before it named anything: mend the largest fault, and record again",
+            ),
             Verdict::Unexplained => (
                 "unexplained",
                 "add the missing effect to the catalogue first: docs/adding-a-term.md",

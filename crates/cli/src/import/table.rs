@@ -10,7 +10,7 @@ use gyrocal_record::{Outputs, Record, ResultTable, printable_path, shell_quoted}
 use crate::measured::unusable;
 use crate::numbers::positive;
 use crate::outputs::refuse_overlap;
-use crate::{Answer, Failure};
+use crate::{Failure, Reply};
 
 /// A table of a stable platform in another format: CSV of any dialect, plain or compressed, MATLAB, Parquet,
 /// MCAP.
@@ -33,7 +33,7 @@ pub(super) struct TableArguments {
 }
 
 /// Runs the command.
-pub(super) fn run(arguments: &TableArguments) -> Result<Answer, Failure> {
+pub(super) fn run(arguments: &TableArguments) -> Result<Reply, Failure> {
     let inputs = [&*arguments.log, &*arguments.columns];
     refuse_overlap(&inputs, &[("--out", Some(&arguments.out))])?;
     let (record, rows) = read(arguments).map_err(|error| unusable(&arguments.log, error))?;
@@ -58,7 +58,7 @@ pub(super) fn run(arguments: &TableArguments) -> Result<Answer, Failure> {
         format!("gyrocal diagnose {out} --bench BENCH.toml"),
         "effects in the record",
     );
-    let mut answer = Answer::of(screen, format!("{what}\n"));
+    let mut answer = Reply::of(screen, format!("{what}\n"));
     answer.wrote(&arguments.out, "the record");
     Ok(answer)
 }

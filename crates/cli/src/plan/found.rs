@@ -3,10 +3,11 @@
 use std::borrow::Cow;
 use std::path::Path;
 
+use gyrocal_answer::{Answer, read_platform};
 use gyrocal_calibration::{FittedPlatform, Options, Run};
 use gyrocal_design::{NamedCause, noise_of};
 use gyrocal_diagnosis::prose::counted;
-use gyrocal_diagnosis::{DiagnoseOptions, DiagnosisResult, Gate, diagnose_watched, result};
+use gyrocal_diagnosis::{DiagnoseOptions, Gate, diagnose_watched};
 use gyrocal_record::{Bench, Input, Record, RecordFile, SetupProblem, printable_path};
 
 use super::failed::{NotPlanned, OtherInput};
@@ -76,7 +77,7 @@ fn written<'a>(
     checked: Gate<'a>,
     bench: &'a Bench,
 ) -> Result<Known<'a>, Failure> {
-    let diagnosis = result::read(path)?;
+    let diagnosis = read_platform(path)?;
     refuse(path, &diagnosis, arguments)?;
     check_inputs(path, &diagnosis, arguments)?;
     let named = NamedCause::all(&diagnosis);
@@ -106,7 +107,7 @@ fn written<'a>(
 /// Refuses a diagnosis of another number of records, and one with axes where none are given, or without.
 pub(super) fn refuse(
     path: &Path,
-    diagnosis: &DiagnosisResult,
+    diagnosis: &Answer,
     arguments: &PlanArguments,
 ) -> Result<(), Failure> {
     let found = diagnosis.records.len().max(1);
@@ -122,7 +123,7 @@ pub(super) fn refuse(
             }
         )));
     }
-    let what = match (diagnosis.strapdown, arguments.gyro_axes.is_empty()) {
+    let what = match (diagnosis.is_strapdown(), arguments.gyro_axes.is_empty()) {
         (true, true) => {
             "is of a strapdown unit: give its axes, --gyro-axes AXES.csv, for each record"
         }
@@ -138,7 +139,7 @@ pub(super) fn refuse(
 /// follow, then axes.
 pub(super) fn check_inputs(
     path: &Path,
-    diagnosis: &DiagnosisResult,
+    diagnosis: &Answer,
     arguments: &PlanArguments,
 ) -> Result<(), Failure> {
     let pairs = arguments.pairs().flat_map(|(record, bench)| {

@@ -3,10 +3,11 @@
 use std::borrow::Cow;
 use std::path::Path;
 
+use gyrocal_answer::read_platform;
 use gyrocal_calibration::{Options, Run};
 use gyrocal_design::{NamedCause, fitted_to_records};
 use gyrocal_diagnosis::{
-    DiagnoseOptions, DiagnosisError, Gate, RecordToDiagnose, diagnose_together, problems_of, result,
+    DiagnoseOptions, DiagnosisError, Gate, RecordToDiagnose, diagnose_together, problems_of,
 };
 use gyrocal_record::{Bench, Record, RecordFile, printable_path};
 
@@ -44,7 +45,7 @@ pub(super) fn known<'a>(
             setup: found.result.setup,
         });
     };
-    let diagnosis = result::read(path)?;
+    let diagnosis = read_platform(path)?;
     refuse(path, &diagnosis, arguments)?;
     check_inputs(path, &diagnosis, arguments)?;
     let mut setup = Vec::new();

@@ -10,7 +10,7 @@ use gyrocal_record::{Outputs, printable_path};
 
 use crate::outputs::refuse_overlap;
 use crate::progress::Progress;
-use crate::{Answer, Failure};
+use crate::{Failure, Reply};
 
 /// Derive the program file of a plant from its Python script; no Rust is needed.
 ///
@@ -26,7 +26,7 @@ pub(super) struct DeriveArguments {
 }
 
 /// Runs the command; returns its answer.
-pub(super) fn run(arguments: &DeriveArguments) -> Result<Answer, Failure> {
+pub(super) fn run(arguments: &DeriveArguments) -> Result<Reply, Failure> {
     let beside = arguments.script.with_extension("json");
     let out = arguments.out.as_deref().unwrap_or(&beside);
     refuse_overlap(&[&arguments.script], &[("--out", Some(out))])?;
@@ -53,9 +53,9 @@ pub(super) fn run(arguments: &DeriveArguments) -> Result<Answer, Failure> {
     for line in derived.left_out {
         screen.fact("left out", line);
     }
-    let mut answer = Answer::of(screen, String::new());
-    answer.wrote(out, "the program, for `gyrocal plant diagnose`");
-    Ok(answer)
+    let mut shown = Reply::of(screen, String::new());
+    shown.wrote(out, "the program, for `gyrocal plant diagnose`");
+    Ok(shown)
 }
 
 /// A number of things, by the word for one of them.

@@ -3,22 +3,22 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use gyrocal_answer::{Answer, Coefficients, Verdict, write_text};
 use gyrocal_diagnosis::prose::{Screen, Standing};
-use gyrocal_instruments::ResultFile;
 use gyrocal_pages::{of_plant, plant_pictures};
-use gyrocal_plant::answer::{Diagnosis, Estimate};
 use gyrocal_plant::{
     ColumnMap, Diagnosed, LoadedPlant, NamedRecord, PlantError, SearchOptions, diagnose_records,
+    sentences,
 };
 use gyrocal_record::{Manifest, Outputs, printable_path};
 use gyrocal_statistics::format;
-use miette::miette;
+use miette::{Report, miette};
 
 use crate::numbers::probability;
 use crate::outputs::{self, manifest, same_file};
 use crate::progress::Progress;
 use crate::tables::{right, table};
-use crate::{Answer, Failure, page, pictures};
+use crate::{Failure, Reply, page, pictures};
 
 /// Find what the model of this plant lacks in a record, or in several.
 #[derive(Debug, Args)]
@@ -57,7 +57,7 @@ pub(super) fn run(
     file: Option<&Path>,
     arguments: &RecordArguments,
     plant: impl FnOnce() -> Result<LoadedPlant, PlantError>,
-) -> Result<Answer, Failure> {
+) -> Result<Reply, Failure> {
     let inputs = checked_inputs(file, arguments)?;
     let plant = plant()?;
     let columns = ColumnMap::read(&arguments.columns)?;
@@ -93,8 +93,9 @@ pub(super) fn run(
     found.together.forecast(next)?;
     drop(progress);
     let manifest = manifest("", options.seed, &inputs)?;
+    found.together.answer.manifest = manifest.clone();
     let answer = &found.together.answer;
-    let mut shown = Answer::of(screen(answer), details(answer));
+    let mut shown = Reply::of(screen(answer), details(answer));
     let mut outputs = Outputs::new();
     if let Some(folder) = &arguments.figures {
         let of = &arguments.records[0];
@@ -121,7 +122,8 @@ pub(super) fn run(
         shown.wrote(path, page::WHAT);
     }
     if let Some(path) = &arguments.json {
-        outputs.stage_json(path, &ResultFile::new(manifest, answer))?;
+        let text = write_text(answer).map_err(|error| Failure::Work(Report::msg(error)))?;
+        outputs.stage(path, text.as_bytes())?;
         shown.wrote(path, "the result for programs");
     }
     outputs.commit()?;
@@ -177,39 +179,37 @@ fn checked_inputs<'a>(
     Ok(inputs)
 }
 
-fn screen(answer: &Diagnosis) -> Screen {
-    let (standing, verdict) = if answer.has_findings() {
-        (Standing::Bad, "MODEL LACKS SOMETHING")
-    } else {
-        (Standing::Good, "NOTHING FOUND")
+fn screen(answer: &Answer) -> Screen {
+    let (standing, verdict) = match answer.verdict {
+        Verdict::Clean => (Standing::Good, "NOTHING FOUND"),
+        Verdict::NotSettled => (Standing::Doubtful, "NOT SETTLED"),
+        _ => (Standing::Bad, "MODEL LACKS SOMETHING"),
     };
-    let mut screen = Screen::new(standing, verdict, answer.verdict());
-    for (label, words) in answer.facts() {
+    let mut screen = Screen::new(standing, verdict, sentences::verdict(answer));
+    for (label, words) in sentences::facts(answer) {
         screen.fact(label, words);
     }
     screen
 }
 
-fn details(answer: &Diagnosis) -> String {
-    let mut shown = String::new();
-    shown += &estimates("", &answer.parameters);
-    for one in &answer.records {
-        shown += &estimates(&one.name, &one.initial);
-    }
+fn details(answer: &Answer) -> String {
+    let parameters = answer.coefficients.iter().map(|all| estimates("", all));
+    let records = answer.records.iter();
+    let initial = records.filter_map(|one| Some(estimates(&one.name, one.initial.as_ref()?)));
     let mut noise = table(vec!["noise", "over the declared one", "95 %"]);
     for one in &answer.noise {
         let [low, high] = one.interval.map(|end| format::significant(end, 3));
         noise.add_row(vec![
-            one.of.as_str().into(),
+            one.channel.as_str().into(),
             right(format::significant(one.ratio, 3)),
             right(format!("{low} to {high}")),
         ]);
     }
-    shown += &format!("{noise}\n");
-    shown
+    let tables = parameters.chain(initial);
+    tables.chain([format!("{noise}\n")]).collect()
 }
 
-fn estimates(title: &str, all: &[Estimate]) -> String {
+fn estimates(title: &str, all: &Coefficients) -> String {
     let mut shown = table(vec![
         title,
         "unit",
@@ -218,15 +218,16 @@ fn estimates(title: &str, all: &[Estimate]) -> String {
         "with findings",
         "sigma",
     ]);
-    for one in all {
+    let models = all.nominal.iter().zip(all.best());
+    for (declared, (nominal, best)) in all.declared.iter().zip(models) {
         let number = |value: f64| right(format::significant(value, 5));
         shown.add_row(vec![
-            one.name.as_str().into(),
-            one.unit.as_str().into(),
-            number(one.declared),
-            number(one.nominal),
-            number(one.value),
-            right(format::significant(one.sigma, 2)),
+            best.name.as_str().into(),
+            best.unit.as_str().into(),
+            number(*declared),
+            number(nominal.estimate),
+            number(best.estimate),
+            right(format::significant(best.sigma, 2)),
         ]);
     }
     format!("{shown}\n\n")

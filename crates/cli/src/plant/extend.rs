@@ -3,14 +3,14 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use gyrocal_answer::{Answer, Subject, read_text};
 use gyrocal_diagnosis::prose::{Screen, Standing};
-use gyrocal_plant::{Extension, LoadedPlant, WrittenDiagnosis};
+use gyrocal_plant::{Extension, LoadedPlant};
 use gyrocal_plant_codegen::{derive, settings_of_a_command};
-use gyrocal_record::{Outputs, printable_path};
-use miette::miette;
+use gyrocal_record::{Error, InputErrorKind, Outputs, SourceText, printable_path};
 
 use crate::progress::Progress;
-use crate::{Answer, Failure};
+use crate::{Failure, Reply};
 
 /// Write what a diagnosis found into the equations of the plant's Python script.
 ///
@@ -27,37 +27,43 @@ pub(super) struct ExtendArguments {
 }
 
 /// Runs the command; returns its answer.
-pub(super) fn run(arguments: &ExtendArguments) -> Result<Answer, Failure> {
-    let read = |path: &PathBuf| {
-        std::fs::read_to_string(path).map_err(|reason| {
-            Failure::Work(miette!(
-                "{}: cannot be read: {reason}",
-                printable_path(path)
-            ))
-        })
-    };
-    let (text, script) = (read(&arguments.diagnosis)?, read(&arguments.script)?);
-    let diagnosis: WrittenDiagnosis = serde_json::from_str(&text).map_err(|reason| {
-        Failure::Work(miette!(
-            help = "give what `diagnose --json` of a plant wrote",
-            "{}: is no diagnosis of a plant: {reason}",
-            printable_path(&arguments.diagnosis)
-        ))
-    })?;
+pub(super) fn run(arguments: &ExtendArguments) -> Result<Reply, Failure> {
+    let source = SourceText::read(&arguments.diagnosis)?;
+    let answer = read_text(&source)?;
+    let script = SourceText::read(&arguments.script)?;
     let origin = printable_path(&arguments.script);
     let progress = Progress::waiting("deriving", 1);
     let derived = derive(&arguments.script, settings_of_a_command())?;
     drop(progress);
     let plant = LoadedPlant::parse(&derived.program, &origin)?;
-    let extension = Extension::of(&plant, &diagnosis);
-    let extended = extension.script(&script, &origin)?;
+    refuse_another(&source, &answer, &plant.description().name)?;
+    let extension = Extension::of(&plant, &answer);
+    let extended = extension.script(script.text(), &origin)?;
     let mut outputs = Outputs::new();
     outputs.stage(&arguments.script, extended.as_bytes())?;
     outputs.commit()?;
-    Ok(answer(arguments, &extension))
+    Ok(shown(arguments, &extension))
 }
 
-fn answer(arguments: &ExtendArguments, extension: &Extension) -> Answer {
+/// Refuses the answer of anything but the plant of this name.
+fn refuse_another(source: &SourceText, answer: &Answer, plant: &str) -> Result<(), Error> {
+    let found = match &answer.subject {
+        Subject::Plant(name) if name == plant => return Ok(()),
+        Subject::Plant(name) => format!("the answer of the plant {name}"),
+        Subject::Platform => "the answer of a platform".to_owned(),
+        Subject::Strapdown => "the answer of a strapdown unit".to_owned(),
+    };
+    let place = source.text().find("\"subject\"").unwrap_or(0);
+    Err(source.error(
+        InputErrorKind::OutOfRange,
+        place..place,
+        found,
+        format!("an answer of the plant {plant}, whose script is to be extended"),
+        "give what `diagnose --json` of this plant wrote; a platform is extended by `gyrocal extend`",
+    ))
+}
+
+fn shown(arguments: &ExtendArguments, extension: &Extension) -> Reply {
     let names: Vec<&str> = extension
         .terms
         .iter()
@@ -73,13 +79,13 @@ fn answer(arguments: &ExtendArguments, extension: &Extension) -> Answer {
         names => format!("The plant has the terms {}.", names.join(", ")),
     };
     let mut screen = Screen::new(standing, verdict, headline);
-    for one in &extension.left_out {
-        screen.fact("left out", format!("{} {}", one.effect, one.why));
+    for (effect, why) in &extension.left_out {
+        screen.fact("left out", format!("{effect} {why}"));
     }
-    let mut answer = Answer::of(screen, String::new());
-    answer.wrote(
+    let mut shown = Reply::of(screen, String::new());
+    shown.wrote(
         &arguments.script,
         "the equations; derive or build them again",
     );
-    answer
+    shown
 }

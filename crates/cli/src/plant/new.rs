@@ -8,7 +8,7 @@ use gyrocal_plant_codegen::{Package, Source};
 use gyrocal_record::{printable_path, shell_quoted};
 use miette::miette;
 
-use crate::{Answer, Failure};
+use crate::{Failure, Reply};
 
 /// Make a package for a plant of your own: its Python script, a build that derives it, a command.
 ///
@@ -24,7 +24,7 @@ pub(crate) struct NewPlantArguments {
 }
 
 /// Runs the command; returns its answer.
-pub(crate) fn run(arguments: &NewPlantArguments) -> Result<Answer, Failure> {
+pub(crate) fn run(arguments: &NewPlantArguments) -> Result<Reply, Failure> {
     let name = arguments.name.file_name().and_then(|name| name.to_str());
     let name = name.ok_or_else(|| {
         let given = printable_path(&arguments.name);
@@ -55,9 +55,9 @@ pub(crate) fn run(arguments: &NewPlantArguments) -> Result<Answer, Failure> {
             shell_quoted(&printable_path(&arguments.name))
         ),
     );
-    let mut answer = Answer::of(screen, String::new());
+    let mut shown = Reply::of(screen, String::new());
     for file in &package.files {
-        answer.wrote(&arguments.name.join(file.path), file.what);
+        shown.wrote(&arguments.name.join(file.path), file.what);
     }
-    Ok(answer)
+    Ok(shown)
 }

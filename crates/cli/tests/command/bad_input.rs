@@ -6,7 +6,7 @@ mod several;
 
 use std::fs;
 
-use gyrocal_diagnosis::{DiagnosisResult, Verdict};
+use gyrocal_answer::{Answer, Verdict};
 use gyrocal_record::{CalibrationReport, FitVerdict, SetupProblem};
 
 use crate::folder::{Folder, example};
@@ -131,7 +131,7 @@ fn wrong_setup(record: impl AsRef<[u8]>, bench: impl AsRef<[u8]>) -> (String, Se
     assert!(problem.stops);
     // The diagnosis says the same.
     folder.succeed(&["diagnose", "r.csv", "--bench", "b.toml", "--json", "d.json"]);
-    let diagnosis: DiagnosisResult = serde_json::from_str(&folder.text("d.json")).unwrap();
+    let diagnosis: Answer = serde_json::from_str(&folder.text("d.json")).unwrap();
     assert_eq!(diagnosis.verdict, Verdict::Setup);
     assert_eq!(diagnosis.setup, std::slice::from_ref(&problem));
     (errors, problem)
@@ -218,7 +218,7 @@ fn an_axis_in_another_unit_is_corrected_told_and_used() {
         ("scale", false)
     );
     folder.succeed(&["diagnose", "r.csv", "--bench", "b.toml", "--json", "d.json"]);
-    let diagnosis: DiagnosisResult = serde_json::from_str(&folder.text("d.json")).unwrap();
+    let diagnosis: Answer = serde_json::from_str(&folder.text("d.json")).unwrap();
     assert_eq!(diagnosis.setup, report.setup);
     assert!(diagnosis.coefficients.is_some());
 }
@@ -260,7 +260,7 @@ fn a_temperature_in_kelvins_is_told_with_its_lines_and_converted() {
     assert_eq!((&*problem.kind, problem.stops), ("temperature", false));
     assert_eq!(problem.lines, Some([2, 301]));
     folder.succeed(&["diagnose", "r.csv", "--bench", "b.toml", "--json", "d.json"]);
-    let told: DiagnosisResult = serde_json::from_str(&folder.text("d.json")).unwrap();
+    let told: Answer = serde_json::from_str(&folder.text("d.json")).unwrap();
     assert_eq!(told.setup, report.setup);
     folder.put("r.csv", with(0.0));
     folder.succeed(&JSON);

@@ -43,7 +43,7 @@ fn schemas_that_are_committed_are_those_of_the_types() {
         ("allan", written_schema::<ResultFile<AllanReport>>()),
         ("calibrate", written_schema::<CalibrationReport>()),
         ("characterise", written_schema::<CharacteriseReport>()),
-        ("diagnose", gyrocal_diagnosis::result::schema()),
+        ("diagnose", gyrocal_answer::schema()),
         ("extend", written_schema::<ExtensionReport>()),
         (
             "import strapdown",
@@ -51,10 +51,7 @@ fn schemas_that_are_committed_are_those_of_the_types() {
         ),
         ("monte-carlo", written_schema::<MonteCarloReport>()),
         ("plan", gyrocal_design::schema()),
-        (
-            "plant diagnose",
-            written_schema::<ResultFile<gyrocal_plant::answer::Diagnosis>>(),
-        ),
+        ("plant diagnose", gyrocal_answer::schema()),
         ("rates", written_schema::<ResultFile<RateReport>>()),
         ("report", gyrocal_diagnosis::uncertainty_schema()),
         ("simulate", written_schema::<TruthReport>()),

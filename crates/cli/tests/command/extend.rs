@@ -1,5 +1,6 @@
 //! `gyrocal extend`: from findings, or a list of effects, to a model file.
 
+use gyrocal_answer::SCHEMA_VERSION;
 use gyrocal_record::{KnownEffect, ModelFile, Standing};
 use gyrocal_truth::units::strapdown::UnitRun;
 use serde_json::{Value, json};
@@ -16,14 +17,14 @@ fn finding(effect: &str, parameters: &[(&str, f64)]) -> Value {
         "effect": effect,
         "parameters": parameters.collect::<Vec<_>>(),
         "name": "?", "kind": "cause", "z": 18.9, "p_value": 1e-12, "coverage": 0.95,
-        "rivals": [], "alternatives": [], "equivalents": []
+        "alternatives": [], "separations": []
     })
 }
 
 /// A result of `gyrocal diagnose --json`.
 fn diagnosis(verdict: &str, findings: &[Value]) -> String {
     let result = json!({
-        "schema_version": 2,
+        "schema_version": SCHEMA_VERSION,
         "manifest": {
             "program": "gyrocal", "version": "0.1.0", "model_hash": "00",
             "inputs": [], "seed": 0, "command": "gyrocal diagnose r.csv --bench b.toml"
@@ -32,16 +33,25 @@ fn diagnosis(verdict: &str, findings: &[Value]) -> String {
             "rows": 100, "duration_s": 6000.0,
             "gaps": { "count": 0, "missing_s": 0.0, "longest_s": 60.0, "missing_values": 0.0 }
         },
+        "subject": "platform",
         "verdict": verdict,
         "false_alarm_probability": 0.01,
         "false_alarm_shares": {
-            "noise_audit": 1e-3, "gyro_noise": 1e-4, "search": 7e-3, "residual_test": 1e-3,
+            "noise_audit": 1e-3, "gyro_noise": 1e-4, "search": 7e-3, "random_walk": 0.0,
+            "residual_test": 1e-3,
             "magnitude_test": 1e-3, "allan_test": 1e-3
         },
         "setup": [],
         "findings": findings,
-        "remainder": { "verdict": "white", "p_value": 0.4, "description": "", "unmodelled": [] },
-        "cannot_tell": [],
+        "remainder": { "verdict": "white", "p_value": 0.4, "description": "",
+            "outputs": [], "unmodelled": []
+        },
+        "open_loop": [],
+        "still_inputs": [],
+        "undetermined": [],
+        "noise": [],
+        "search_complete": true,
+        "next_runs": [],
         "ranking": [],
         "power": [],
         "not_searched": []
@@ -101,7 +111,9 @@ fn terms_that_were_found_are_in_the_model_and_the_rest_is_explained() {
 fn a_member_of_a_set_takes_the_place_of_the_effect_that_is_named() {
     let folder = Folder::new();
     let mut found = finding("gyro_y.g_z", &[("size", 0.05)]);
-    found["alternatives"] = json!([{ "effect": "gyro_y.ramp", "log_likelihood_deficit": 0.7 }]);
+    found["alternatives"] = json!([{
+        "effect": "gyro_y.ramp", "kind": "not-excluded", "log_likelihood_deficit": 0.7, "parameters": []
+    }]);
     let findings = [found, finding("gyro_x.g_y", &[("size", 0.1)])];
     folder.put("d.json", diagnosis("effects-found", &findings));
     let with = |member| {
@@ -171,15 +183,15 @@ fn a_file_that_is_no_diagnosis_is_shown_where_it_is_wrong() {
     // Keys are written in the order of the alphabet: after `false_alarm_shares` with its six.
     assert_says(&said, "d.json:12:");
     assert_says(&said, "expected the result of `gyrocal diagnose --json`");
-    let said = refused(&good.replace("\"schema_version\": 2", "\"schema_version\": 1"));
-    assert_says(&said, "found schema_version 1, expected 2");
+    let said = refused(&good.replace("\"schema_version\": 3", "\"schema_version\": 2"));
+    assert_says(&said, "found schema_version 2, expected 3");
     assert_says(
         &said,
         "write it again with `gyrocal diagnose` of this version",
     );
     // A result of another version may have other fields; the version is reported.
-    let said = refused("{ \"schema_version\": 3 }");
-    assert_says(&said, "found schema_version 3, expected 2");
+    let said = refused("{ \"schema_version\": 4 }");
+    assert_says(&said, "found schema_version 4, expected 3");
     let said = refused(&good.replace("\"clean\"", "\"fine\""));
     assert_says(&said, "unknown variant `fine`");
     assert_says(
@@ -351,7 +363,7 @@ fn advice_on_a_strapdown_unit_is_for_such_a_unit() {
     ];
     let result = diagnosis("effects-found", &findings);
     let mut result: Value = serde_json::from_str(&result).unwrap();
-    result["strapdown"] = json!(true);
+    result["subject"] = json!("strapdown");
     folder.put("d.json", result.to_string());
     let said = folder.succeed(&MODEL);
     assert_says(

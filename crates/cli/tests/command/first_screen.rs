@@ -60,7 +60,7 @@ fn a_fault_is_told_with_size_significance_alternatives_and_next_step() {
     for words in [
         "\nmay also be   gyro_yz.axis_misalignment, gyro_y.magnetic\n",
         "open-loop error 35.5 → 17.7 µg",
-        "\ncoefficients  change by gyro_z.g_zz +5.0",
+        "\ncoefficients  change by gyro_z.g_zz +2.8",
         "\nnext          gyrocal plan hidden_fault.csv --bench hidden_fault.bench.toml",
         "\nd.json: the result for programs\n",
     ] {

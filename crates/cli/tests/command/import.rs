@@ -211,7 +211,7 @@ fn it_is_diagnosed_in_the_axes_of_its_gyros() {
     let said = folder.succeed(&with(&["--gyro-axes", "a.csv", "--json", "d.json"]));
     assert!(said.contains("fixed to a body"), "{said}");
     let json: serde_json::Value = serde_json::from_str(&folder.text("d.json")).unwrap();
-    assert_eq!(json["strapdown"], true);
+    assert_eq!(json["subject"], "strapdown");
     for finding in json["findings"].as_array().unwrap() {
         // As without the axes: the vehicle rocks.
         let effect = finding["effect"].as_str().unwrap();

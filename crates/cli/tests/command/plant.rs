@@ -22,7 +22,7 @@ fn a_missing_file_is_told() {
 }
 
 #[test]
-fn the_answer_for_programs_names_the_cause_and_its_set() {
+fn the_answer_for_programs_names_the_cause_and_extends_its_plant_alone() {
     let folder = Folder::new();
     let example = |name: &str| {
         repository(&format!("examples/duffing/{name}"))
@@ -39,9 +39,29 @@ fn the_answer_for_programs_names_the_cause_and_its_set() {
         "--json",
         "o.json",
     ]);
-    let answer: serde_json::Value = serde_json::from_str(&folder.text("o.json")).unwrap();
+    let mut answer: serde_json::Value = serde_json::from_str(&folder.text("o.json")).unwrap();
     // The simulator's spring softens by -0.05 x^3 (crates/truth).
     assert_eq!(answer["findings"][0]["effect"], "v_rate.x^3");
+
+    folder.put("plant.py", std::fs::read(example("plant.py")).unwrap());
+    for (subject, found) in [
+        (
+            serde_json::json!({ "plant": "Pump" }),
+            "the answer of the plant Pump",
+        ),
+        (serde_json::json!("platform"), "the answer of a platform"),
+    ] {
+        answer["subject"] = subject;
+        folder.put("other.json", answer.to_string());
+        let errors = folder.fail(&["plant", "extend", "other.json"]);
+        for words in [
+            found,
+            "an answer of the plant Duffing",
+            "of this plant wrote",
+        ] {
+            assert!(errors.contains(words), "{errors}");
+        }
+    }
 }
 
 #[test]
@@ -94,8 +114,8 @@ fn several_records_have_one_answer_and_a_report() {
     let records = answer["records"].as_array().unwrap();
     // The simulator begins both with 0.2 m.
     for one in records {
-        let initial = &one["initial"][0];
-        let [value, sigma] = ["value", "sigma"].map(|name| initial[name].as_f64().unwrap());
+        let initial = &one["initial"]["extended"][0];
+        let [value, sigma] = ["estimate", "sigma"].map(|name| initial[name].as_f64().unwrap());
         assert!((value - 0.2).abs() < 4.5 * sigma, "{initial}");
     }
     assert_eq!(records.len(), 2);
@@ -185,8 +205,9 @@ fn a_wave_of_a_known_period_is_found() {
     let answer: serde_json::Value = serde_json::from_str(&folder.text("o.json")).unwrap();
     let findings = answer["findings"].as_array().unwrap();
     let sets = findings.iter().map(|one| {
-        let rivals = one["rivals"].as_array().unwrap().iter();
-        let names = rivals.map(|rival| &rival[0]).chain([&one["effect"]]);
+        let others = one["alternatives"].as_array().unwrap().iter();
+        let others = others.filter(|other| other["kind"] == "not-excluded");
+        let names = others.map(|other| &other["effect"]).chain([&one["effect"]]);
         names.map(|name| name.as_str().unwrap()).collect::<Vec<_>>()
     });
     let sets: Vec<Vec<&str>> = sets.collect();
@@ -200,7 +221,7 @@ fn a_wave_of_a_known_period_is_found() {
         "the spring and two parts of the wave: {sets:?}"
     );
     // The sensor's noise of 0.01, and what an estimate of it from 800 rows may be off by.
-    let left = answer["errors"][0]["extended"].as_f64().unwrap();
+    let left = answer["open_loop"][0]["extended"].as_f64().unwrap();
     assert!((0.0095..0.0115).contains(&left), "{left}");
 }
 
@@ -249,7 +270,7 @@ fn runs_that_could_be_made_next_are_compared() {
         .map(|run| &run["name"]);
     assert_eq!(names.collect::<Vec<_>>(), ["strong.csv", "weak.csv"]);
     assert_eq!(
-        answer["cross_validation"]["gains_nats"]
+        answer["gain"]["block_log_score_nats"]
             .as_array()
             .unwrap()
             .len(),

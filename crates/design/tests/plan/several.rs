@@ -1,13 +1,13 @@
 //! Planned runs after several records, with random walks, wrong attitudes and temperatures.
 
 use gyrocal::EFFECTS;
+use gyrocal_answer::{Answer, SizeChoice};
 use gyrocal_calibration::{
     FittedPlatform, NoiseModel, Options, Run, calibrate_runs, joined_record,
 };
 use gyrocal_design::{
     Aim, Forecast, NamedCause, PlanOptions, PlanResult, first_screen, fitted_to_records, plan,
 };
-use gyrocal_diagnosis::result::{DiagnosisResult, SizeChoice};
 use gyrocal_diagnosis::{DiagnoseOptions, Gate, RecordToDiagnose, diagnose_records};
 use gyrocal_hypothesis::RateNoise;
 use gyrocal_record::Prior;
@@ -149,7 +149,7 @@ fn short() -> PlanOptions {
 }
 
 /// The joint diagnosis of two records, as it is written.
-fn diagnosed(records: &[Simulation; 2]) -> (DiagnosisResult, PlanResult) {
+fn diagnosed(records: &[Simulation; 2]) -> (Answer, PlanResult) {
     let options = DiagnoseOptions::default();
     let given = records.iter().enumerate().map(|(index, one)| {
         let kind = gyrocal_setup::PlatformKind::Stabilised;
@@ -205,7 +205,7 @@ fn a_plan_from_a_written_joint_diagnosis_is_that_from_the_diagnosis() {
 fn a_cause_with_a_size_for_each_turn_on_has_another_in_the_next_run() {
     let records = two_records(0.0, [0.01; 2]);
     let (mut result, _) = diagnosed(&records);
-    let chosen = |result: &DiagnosisResult, choice: SizeChoice| {
+    let chosen = |result: &Answer, choice: SizeChoice| {
         let mut result = result.clone();
         for finding in &mut result.findings {
             if let Some(found) = &mut finding.by_record {

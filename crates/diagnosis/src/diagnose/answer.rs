@@ -3,26 +3,26 @@
 use gyrocal::generated::MODEL_HASH;
 use gyrocal_calibration::{FittedPlatform, NoiseEstimate, NoiseRatio, Run};
 use gyrocal_hypothesis::Searched;
-use gyrocal_record::{Manifest, NoiseRatioReport, NoiseReport, Record, SetupProblem};
+use gyrocal_record::{AXES, Manifest, Record, SetupProblem};
 use gyrocal_statistics::{self as statistics, NoiseCourse};
 
 use super::coefficients::coefficients;
 use super::{DiagnoseOptions, findings};
 use crate::distinguishability::{
-    indistinguishable, set_ups_without_angles, tell_together, time_and_temperature,
+    separate, set_ups_without_angles, tell_together, time_and_temperature,
 };
 use crate::filter_test::Tested;
 use crate::magnitude_test;
 use crate::noise::{NoiseAudit, NoiseFinding, gaps};
 use crate::power::{needs_caveat, undetectable};
-use crate::result::{
-    AllanCourse, AllanPoint, AllanTest, DiagnosisResult, Estimated, FalseAlarmShares, Finding,
-    Gain, Indistinguishable, MagnitudeTest, ModelNoise, NoiseAuditSummary, NotTested,
-    NotTestedReason, Power, RankedEffect, RecordSummary, ResidualTest, ResidualVerdict, Residuals,
-    SCHEMA_VERSION, SizesByRecord, Verdict,
-};
 use crate::untested::{Tests, not_tested, untested};
 use crate::validation::CrossValidated;
+use gyrocal_answer::{
+    AllanCourse, AllanPoint, AllanTest, Answer, Estimated, FalseAlarmShares, Finding, Gain,
+    MagnitudeTest, ModelNoise, NoiseAuditSummary, NoiseLevel, NotTested, NotTestedReason, Power,
+    RankedEffect, RecordSummary, ResidualTest, Residuals, SCHEMA_VERSION, SetUps, SizesByRecord,
+    Subject,
+};
 
 /// Outcomes of all tests of one diagnosis.
 pub(super) struct Evidence<'e, 'a> {
@@ -49,29 +49,26 @@ pub(super) struct Evidence<'e, 'a> {
 
 impl Evidence<'_, '_> {
     /// The answer.
-    pub(super) fn answer(self) -> DiagnosisResult {
+    pub(super) fn answer(self) -> Answer {
         let findings = self.findings();
-        let verdict = if !findings.is_empty() {
-            Verdict::EffectsFound
-        } else if self.remainder.verdict == ResidualVerdict::Unexplained || self.searched.is_cut {
-            Verdict::Unexplained
-        } else {
-            Verdict::Clean
-        };
+        let verdict = Answer::judged(&findings, &self.remainder, !self.searched.is_cut);
         let ranking = &self.searched.ranking;
         let threshold = self.searched.threshold;
-        DiagnosisResult {
+        Answer {
             schema_version: SCHEMA_VERSION,
             manifest: manifest(self.options.seed),
             record: record_summary(self.run.record),
             records: Vec::new(),
-            strapdown: self.nominal.is_strapdown(),
+            subject: match self.nominal.is_strapdown() {
+                true => Subject::Strapdown,
+                false => Subject::Platform,
+            },
             later_record: None,
             verdict,
             false_alarm_probability: self.options.false_alarm_probability,
-            false_alarm_shares: self.shares,
+            false_alarm_shares: Some(self.shares),
             norm: self.magnitude.as_ref().map(magnitude),
-            cannot_tell: self.indistinguishable(&findings),
+            set_ups: self.set_ups(),
             findings,
             coefficients: Some(coefficients(
                 self.nominal,
@@ -86,7 +83,7 @@ impl Evidence<'_, '_> {
                 })
                 .collect(),
             threshold: Some(threshold).filter(|threshold| threshold.is_finite()),
-            noise: Some(noise(self.estimate)),
+            noise: noise(self.estimate),
             model_noise: Some(model_noise(self.validated, self.nominal)),
             noise_audit: Some(audit(self.audit)),
             allan: self.allan.as_ref().map(allan),
@@ -98,6 +95,12 @@ impl Evidence<'_, '_> {
             gain: self.gain,
             remainder: self.remainder,
             filter: self.filter.map(|filter| filter.test),
+            open_loop: Vec::new(),
+            horizon_s: None,
+            still_inputs: Vec::new(),
+            undetermined: Vec::new(),
+            starts: None,
+            next_runs: Vec::new(),
         }
     }
 
@@ -112,28 +115,26 @@ impl Evidence<'_, '_> {
                 ..findings::of_cause(finding, decision)
             });
         let filter = self.filter.as_ref().and_then(|tested| tested.inconsistent);
-        noise
+        let mut all: Vec<Finding> = noise
             .map(findings::of_noise)
             .chain(causes)
             .chain(filter.map(findings::of_filter))
-            .collect()
-    }
-
-    fn indistinguishable(&self, findings: &[Finding]) -> Vec<Indistinguishable> {
+            .collect();
         let field_is_known = self.run.bench.magnetic_field_gauss.is_some();
         let searched: Vec<&str> = self.searched.ranking.iter().map(|r| r.effect).collect();
-        let mut groups: Vec<Indistinguishable> = findings
-            .iter()
-            .flat_map(|finding| indistinguishable(finding, &searched, field_is_known))
-            .collect();
+        for finding in &mut all {
+            separate(finding, &searched, field_is_known);
+        }
         let each = self.nominal.record_rows();
         if let Some(correlation) = time_and_temperature(self.run.record, &each) {
-            tell_together(&mut groups, correlation);
+            tell_together(&mut all, correlation);
         }
-        if self.run.bench.initial_angles_deg.is_none() && !self.nominal.is_strapdown() {
-            groups.push(set_ups_without_angles());
-        }
-        groups
+        all
+    }
+
+    fn set_ups(&self) -> Option<SetUps> {
+        let is_free = self.run.bench.initial_angles_deg.is_none() && !self.nominal.is_strapdown();
+        is_free.then(set_ups_without_angles)
     }
 
     /// Effects that a short record could not show, then those that were not tested.
@@ -192,15 +193,17 @@ fn magnitude(verdict: &magnitude_test::MagnitudeTest) -> MagnitudeTest {
     }
 }
 
-fn noise(estimate: &NoiseEstimate) -> NoiseReport {
-    let ratio = |found: NoiseRatio| NoiseRatioReport {
-        ratio: found.ratio,
-        interval: found.interval,
+fn noise(estimate: &NoiseEstimate) -> Vec<NoiseLevel> {
+    let of = |sensor: &str, found: [NoiseRatio; 3]| {
+        let each = AXES.iter().zip(found);
+        let levels = each.map(|(axis, found)| NoiseLevel {
+            channel: format!("{sensor}_{axis}"),
+            ratio: found.ratio,
+            interval: found.interval,
+        });
+        levels.collect::<Vec<_>>()
     };
-    NoiseReport {
-        accel: estimate.accel.map(ratio),
-        gyro: estimate.gyro.map(ratio),
-    }
+    [of("accel", estimate.accel), of("gyro", estimate.gyro)].concat()
 }
 
 fn model_noise(validated: &CrossValidated<'_>, nominal: &FittedPlatform<'_>) -> ModelNoise {

@@ -9,8 +9,8 @@ use gyrocal_calibration::FittedPlatform;
 use gyrocal_hypothesis::{Finding, NominalEstimate};
 use gyrocal_statistics::{normal_probability, student_probability};
 
-use crate::result::{CoefficientEstimate, CoefficientInterval, Coefficients, SetMember};
 use crate::validation::CrossValidated;
+use gyrocal_answer::{CoefficientEstimate, CoefficientInterval, Coefficients, SetMember};
 
 /// Probability on each side of a 95 % interval.
 const TAIL: f64 = 0.025;
@@ -71,6 +71,7 @@ pub(super) fn coefficients(
         .collect()
     };
     Coefficients {
+        declared: Vec::new(),
         nominal: DRIFT
             .iter()
             .enumerate()

@@ -12,8 +12,8 @@ use crate::error_budget::shares;
 use crate::gate::Gate;
 use crate::noise::AuditOptions;
 use crate::request;
-use crate::result::{Compensation, Validation};
 use crate::validation::{LaterPrediction, predict};
+use gyrocal_answer::{Compensation, Validation};
 
 impl Diagnosis<'_> {
     /// Predicts a later record of the same platform with the nominal and the extended model, and
@@ -108,12 +108,14 @@ fn validation(prediction: &LaterPrediction) -> Validation {
     let [nominal_arcmin, extended_arcmin, expected_arcmin] = attitude.at_end_arcmin();
     Validation {
         log_score_nats: prediction.gain_nats(),
-        compensation: Compensation {
+        compensation: Some(Compensation {
             starts: attitude.starts,
             after_h: attitude.time_s.last().copied().unwrap_or(0.0) / 3600.0,
             nominal_arcmin,
             extended_arcmin,
             expected_arcmin,
-        },
+        }),
+        open_loop: Vec::new(),
+        horizon_s: None,
     }
 }

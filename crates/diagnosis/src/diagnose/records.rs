@@ -15,9 +15,9 @@ use crate::gate::Gate;
 use crate::magnitude_test::{MagnitudeTest, magnitude_test};
 use crate::noise::{AuditOptions, NoiseAudit, NoiseFinding};
 use crate::request;
-use crate::result::{Estimated, Gaps, RecordResult, RecordSummary};
 use crate::series::Innovations;
 use crate::stage::Stage;
+use gyrocal_answer::{Estimated, Gaps, RecordResult, RecordSummary};
 
 /// Difference of a coefficient between two records that no error of a platform makes, in its standard
 /// deviations.
@@ -88,7 +88,10 @@ pub fn diagnose_records(
             turn_on_deg_per_h: turn_ons
                 .get(index)
                 .map(|axes| axes.map(|[estimate, sigma]| Estimated { estimate, sigma })),
-            alone: alone.result.clone(),
+            initial: None,
+            open_loop: Vec::new(),
+            alone: Some(alone.result.clone()),
+            why_not_alone: String::new(),
         })
         .collect();
     let sizes = together.result.records.iter().map(|one| &one.record);

@@ -12,7 +12,7 @@ use crate::error_budget::shares;
 use crate::noise::AuditOptions;
 use crate::request;
 use crate::residual_test::{decorrelated, residual_test, whitened};
-use crate::result::ResidualVerdict;
+use gyrocal_answer::ResidualVerdict;
 
 /// A record with more rows is averaged before it is tested.
 const MOST_ROWS: usize = 10_000;
@@ -31,7 +31,7 @@ pub struct ScreenedRecord {
     /// the test.
     pub is_white: Option<bool>,
     /// p-value of that test.
-    pub residual_p_value: f64,
+    pub residual_p_value: Option<f64>,
 }
 
 impl ScreenedRecord {
@@ -46,7 +46,7 @@ impl ScreenedRecord {
             significant: self.effects.is_significant,
             noise: self.noise.iter().map(|id| (*id).to_owned()).collect(),
             white: self.is_white,
-            residual_p_value: self.is_white.map(|_| self.residual_p_value),
+            residual_p_value: self.is_white.and(self.residual_p_value),
         }
     }
 }

@@ -9,7 +9,7 @@ use gyrocal_calibration::{CalibrationError, FittedPlatform, RecordSizes};
 use gyrocal_hypothesis::{Searched, scale};
 use nalgebra::{Cholesky, DMatrix};
 
-use crate::result::{Estimated, RecordSize, SizeChoice, SizesByRecord};
+use gyrocal_answer::{Estimated, RecordSize, SizeChoice, SizesByRecord};
 
 /// Log-odds from which on a choice is told, nats: three to one.
 const DECIDED_NATS: f64 = 1.1;

@@ -12,8 +12,8 @@ use super::outlier::{self, Outlier};
 use super::readings;
 use super::spectrum::Spectrum;
 use crate::error::DiagnosisError;
-use crate::result::Gaps;
 use crate::series::Innovations;
+use gyrocal_answer::Gaps;
 
 /// Smallest quantisation step tested for, in standard deviations of the noise: it increases the
 /// variance by 2 %, the standard deviation by 1 %.

@@ -2,7 +2,7 @@
 
 use super::outlier::Outlier;
 use crate::error_budget::NOISE_AUDIT_PARTS;
-use crate::result::Gaps;
+use gyrocal_answer::Gaps;
 
 /// An estimate with its standard deviation.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -5,7 +5,7 @@ use gyrocal::{EFFECTS, Effect};
 use gyrocal_statistics::format;
 
 use super::{Screen, Standing};
-use crate::result::DiagnosisResult;
+use gyrocal_answer::Answer;
 
 /// All that the catalogue says of an effect.
 #[must_use]
@@ -74,7 +74,7 @@ pub fn is_correlation(id: &str) -> bool {
 }
 
 /// Whether a random walk is among the causes: a simulation without measurements cannot follow it.
-pub(super) fn has_random_walk(result: &DiagnosisResult) -> bool {
+pub(super) fn has_random_walk(result: &Answer) -> bool {
     let mut causes = result.causes();
     causes.any(|cause| kind(&cause.effect) == Some(EffectKind::RandomWalk))
 }

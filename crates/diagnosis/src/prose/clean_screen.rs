@@ -6,9 +6,9 @@ use super::first_screen::{ALTERNATIVES_SHOWN, plan, remainder};
 use super::format::counted;
 use super::records::files;
 use super::screen::{Screen, Standing, few};
-use crate::result::{DiagnosisResult, NotTestedReason};
+use gyrocal_answer::{Answer, NotTestedReason};
 
-pub(super) fn clean(result: &DiagnosisResult) -> Screen {
+pub(super) fn clean(result: &Answer) -> Screen {
     let is_short = result.hides_most();
     let mut screen = match is_short {
         true => Screen::new(
@@ -53,7 +53,7 @@ pub(super) fn clean(result: &DiagnosisResult) -> Screen {
 }
 
 /// Effects that would go undetected at their typical size.
-fn undetected(result: &DiagnosisResult) -> String {
+fn undetected(result: &Answer) -> String {
     let low = result.low_power();
     match low.len() {
         0 => "effects well below their typical size (gyrocal effects)".to_owned(),
@@ -66,7 +66,7 @@ fn undetected(result: &DiagnosisResult) -> String {
 }
 
 /// Effects that were not tested for.
-fn untested(result: &DiagnosisResult) -> String {
+fn untested(result: &Answer) -> String {
     let others = result.not_searched.iter();
     let others: Vec<&str> = others
         .filter(|effect| effect.reason != NotTestedReason::LowPower)

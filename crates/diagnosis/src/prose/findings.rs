@@ -1,17 +1,17 @@
 //! Detected effects, one entry each.
 
-use gyrocal_statistics::format::{p_value, percent, short as rounded};
+use gyrocal_statistics::format::{percent, short as rounded};
 
 use super::Block;
-use super::format::{short, with_sigma};
+use super::format::{short, tested, with_sigma};
 use super::records;
-use crate::result::{Alternative, DiagnosisResult, Finding, Parameter};
+use gyrocal_answer::{Alternative, AlternativeKind, Answer, Finding, Parameter};
 
 /// Alternatives that an entry names; the ranking shows all of them.
 const ALTERNATIVES_SHOWN: usize = 4;
 
 /// One entry for each detected effect.
-pub(super) fn entries(result: &DiagnosisResult) -> impl Iterator<Item = Block> {
+pub(super) fn entries(result: &Answer) -> impl Iterator<Item = Block> {
     let findings = result.findings.iter().enumerate();
     findings.map(|(index, finding)| Block::Entry {
         number: index + 1,
@@ -29,11 +29,9 @@ fn paragraphs(finding: &Finding) -> Vec<String> {
              ({nats:+.1} nats)."
         ));
     }
-    if !finding.alternatives.is_empty() {
-        paragraphs.push(alternatives(finding));
-    }
+    paragraphs.extend(alternatives(finding));
     paragraphs.extend(none_of_these(finding));
-    let equivalents = finding.equivalents.iter();
+    let equivalents = finding.of_kind(AlternativeKind::ExactEquivalent);
     paragraphs.extend(equivalents.map(|equivalent| {
         format!(
             "Exact equivalent, in any record: {}, {}.",
@@ -45,7 +43,7 @@ fn paragraphs(finding: &Finding) -> Vec<String> {
 }
 
 fn estimate(finding: &Finding) -> String {
-    let significance = format!("{:.1} sigma, {}", finding.z, p_value(finding.p_value));
+    let significance = format!("{:.1} sigma, {}", finding.z, tested(finding.p_value));
     if finding.parameters.is_empty() {
         significance
     } else {
@@ -53,24 +51,21 @@ fn estimate(finding: &Finding) -> String {
     }
 }
 
-fn alternatives(finding: &Finding) -> String {
-    let shown = finding.alternatives.iter().take(ALTERNATIVES_SHOWN);
-    let shown: Vec<String> = shown
+fn alternatives(finding: &Finding) -> Option<String> {
+    let set: Vec<String> = finding
+        .of_kind(AlternativeKind::NotExcluded)
         .map(|other| format!("{} ({})", other.effect, likelihood(other)))
         .collect();
-    let more = match finding
-        .alternatives
-        .len()
-        .saturating_sub(ALTERNATIVES_SHOWN)
-    {
+    let shown = &set[..set.len().min(ALTERNATIVES_SHOWN)];
+    let more = match set.len().saturating_sub(ALTERNATIVES_SHOWN) {
         0 => String::new(),
         more => format!(" and {more} more"),
     };
-    let set = match finding.coverage {
+    let of = match finding.coverage {
         Some(coverage) => format!("{} confidence set", percent(coverage)),
         None => "confidence set".to_owned(),
     };
-    format!("Alternatives ({set}): {}{more}.", shown.join(", "))
+    (!set.is_empty()).then(|| format!("Alternatives ({of}): {}{more}.", shown.join(", ")))
 }
 
 /// The probability that the cause is not in the catalogue, and how much likelier it is than what is named.
@@ -134,11 +129,16 @@ pub(super) fn likely(probability: f64) -> String {
     }
 }
 
-/// Likelihood of an alternative against the reported effect.
+/// How an alternative stands to the reported effect: the likelihood of one that is not excluded.
 #[must_use]
 pub fn likelihood(alternative: &Alternative) -> String {
     // Beyond this the factor carries no information.
-    let factor = alternative.log_likelihood_deficit.clamp(-50.0, 50.0).exp();
+    let deficit = match (alternative.kind, alternative.log_likelihood_deficit) {
+        (AlternativeKind::ExactEquivalent, _) => return "exact equivalent".to_owned(),
+        (AlternativeKind::NotExcluded, Some(deficit)) => deficit,
+        _ => return "not searched".to_owned(),
+    };
+    let factor = deficit.clamp(-50.0, 50.0).exp();
     if factor >= 1.05 {
         format!("{factor:.1} times less likely")
     } else if factor > 0.95 {
@@ -182,10 +182,12 @@ mod tests {
 
     #[test]
     fn an_alternative_is_described_by_its_likelihood() {
-        let of = |log_likelihood_deficit| {
+        let of = |deficit: f64| {
             likelihood(&Alternative {
                 effect: "gyro_x.ramp".to_owned(),
-                log_likelihood_deficit,
+                kind: AlternativeKind::NotExcluded,
+                log_likelihood_deficit: Some(deficit),
+                parameters: Vec::new(),
             })
         };
         assert_eq!(of(2.0), "7.4 times less likely");

@@ -6,14 +6,11 @@ use gyrocal_statistics::format::{self, p_value, percent, with_sigma};
 use super::catalogue::has_random_walk;
 use super::clean_screen;
 use super::findings::{likely, value};
-use super::format::{counted, short};
+use super::format::{NO_P, counted, short, tested};
 use super::records::{self, files};
 use super::screen::{Screen, Standing, few};
 use super::verdict;
-use crate::result::{
-    DiagnosisResult, Finding, FindingKind, Indistinguishable, Parameter, Relation, ResidualVerdict,
-    Verdict,
-};
+use gyrocal_answer::{Answer, Finding, FindingKind, Parameter, ResidualVerdict, Verdict};
 
 /// Findings that are told one by one.
 const FINDINGS_SHOWN: usize = 4;
@@ -32,18 +29,19 @@ const STRAPDOWN: &str = "coefficients and effects are errors of the outputs of i
 
 /// The first screen: verdict, size, significance, alternatives, effect on the coefficients, next step.
 #[must_use]
-pub fn first_screen(result: &DiagnosisResult) -> Screen {
+pub fn first_screen(result: &Answer) -> Screen {
     let mut screen = match result.verdict {
         Verdict::EffectsFound => found(result),
+        Verdict::NotSettled if !result.findings.is_empty() => found(result),
+        Verdict::NotSettled => not_settled(result),
         Verdict::Unexplained => unexplained(result),
         Verdict::Setup => wrong_setup(result),
         Verdict::Clean => clean_screen::clean(result),
     };
-    if result.strapdown {
+    if result.is_strapdown() {
         screen.fact("axes", STRAPDOWN);
     }
-    let mut groups = result.cannot_tell.iter();
-    if let Some(group) = groups.find(|group| group.relation == Relation::SetUps) {
+    if let Some(group) = &result.set_ups {
         let others: Vec<&str> = group.members.iter().skip(1).map(|own| &**own).collect();
         screen.fact(
             "axes",
@@ -51,7 +49,7 @@ pub fn first_screen(result: &DiagnosisResult) -> Screen {
         );
     }
     if result.verdict != Verdict::Setup {
-        if result.record.duration_s < LEAST_TURN_S && !result.strapdown {
+        if result.record.duration_s < LEAST_TURN_S && !result.is_strapdown() {
             screen.fact("set-up", too_short_for_turn());
         }
         let problems = result.setup.iter().take(PROBLEMS_SHOWN);
@@ -77,7 +75,7 @@ fn too_short_for_turn() -> String {
     )
 }
 
-fn found(result: &DiagnosisResult) -> Screen {
+fn found(result: &Answer) -> Screen {
     let what = match &result.findings[..] {
         [one] => format!("{}, {}", one.effect, one.name),
         several => {
@@ -89,7 +87,9 @@ fn found(result: &DiagnosisResult) -> Screen {
             )
         }
     };
-    let mut screen = Screen::new(Standing::Bad, "FAULT", what);
+    let is_settled = result.verdict == Verdict::EffectsFound;
+    let verdict = if is_settled { "FAULT" } else { "NOT SETTLED" };
+    let mut screen = Screen::new(Standing::Bad, verdict, what);
     for finding in result.findings.iter().take(FINDINGS_SHOWN) {
         let label = match result.findings.len() {
             1 => "how large",
@@ -98,6 +98,9 @@ fn found(result: &DiagnosisResult) -> Screen {
         screen.fact(label, size(finding));
     }
     screen.fact("in each record", records::fact(result));
+    if !is_settled {
+        screen.fact("not settled", verdict::not_settled(result));
+    }
     screen.fact(
         "how sure",
         format!(
@@ -123,7 +126,10 @@ fn size(finding: &Finding) -> String {
     });
     let mut parts: Vec<String> = parameters.collect();
     parts.push(format!("{:.1} sigma", finding.z));
-    parts.push(format!("search-corrected {}", p_value(finding.p_value)));
+    parts.push(match finding.p_value {
+        Some(p) => format!("search-corrected {}", p_value(p)),
+        None => NO_P.to_owned(),
+    });
     let left_out = match finding.accepted {
         Some(false) => "; no predictive gain: not in the extended model",
         _ => "",
@@ -144,36 +150,25 @@ fn value_with_unit(parameter: &Parameter) -> String {
 
 /// The other members of the confidence sets, exact equivalents and near twins, without repetition.
 #[must_use]
-pub fn may_also_be(result: &DiagnosisResult) -> String {
+pub fn may_also_be(result: &Answer) -> String {
     let mut names: Vec<&str> = Vec::new();
     let mut add = |name| {
         if !names.contains(&name) {
             names.push(name);
         }
     };
-    for finding in &result.findings {
-        for equivalent in &finding.equivalents {
-            add(equivalent.effect.as_str());
-        }
-        for alternative in &finding.alternatives {
-            add(alternative.effect.as_str());
-        }
+    let all = result.findings.iter();
+    for alternative in all.flat_map(|finding| &finding.alternatives) {
+        add(alternative.effect.as_str());
     }
-    let groups = result.cannot_tell.iter();
-    let twins = groups.filter(|group| group.relation == Relation::NearTwins);
-    for twin in twins.flat_map(|group| group.members.iter().skip(1)) {
-        add(twin.as_str());
-    }
-    let unlisted = result
-        .causes()
-        .filter_map(|finding| finding.none_of_these)
-        .fold(0.0, f64::max);
-    let unlisted = (unlisted >= TOLD).then(|| {
-        format!(
-            "a cause outside of the catalogue (probability {})",
-            likely(unlisted)
-        )
-    });
+    let told = result.causes().filter_map(|finding| finding.none_of_these);
+    let unlisted = match told.reduce(f64::max) {
+        Some(most) if most >= TOLD => Some(likely(most)),
+        None if result.verdict == Verdict::NotSettled => Some("not estimated".to_owned()),
+        _ => None,
+    };
+    let unlisted = unlisted
+        .map(|probability| format!("a cause outside of the catalogue (probability {probability})"));
     let listed = (!names.is_empty()).then(|| few(&names, ALTERNATIVES_SHOWN));
     match (listed, unlisted) {
         (None, None) if result.causes().next().is_some() => nothing_else(result),
@@ -185,7 +180,7 @@ pub fn may_also_be(result: &DiagnosisResult) -> String {
 }
 
 /// What sets without a second member say: their coverage, where it was measured and the search was complete.
-fn nothing_else(result: &DiagnosisResult) -> String {
+fn nothing_else(result: &Answer) -> String {
     if !result.search_complete {
         return "nothing else that the search came to compare".to_owned();
     }
@@ -198,19 +193,19 @@ fn nothing_else(result: &DiagnosisResult) -> String {
 }
 
 /// Error of the open-loop simulation, gain and changes of the coefficients.
-fn effect_on_fit(result: &DiagnosisResult, screen: &mut Screen) {
+fn effect_on_fit(result: &Answer, screen: &mut Screen) {
     let Some(gain) = &result.gain else {
         return;
     };
     let micro = |g: f64| format::short(1e6 * g, 3);
-    let rms = gain.free_run_rms_g;
     let left_out = format!(
         "{:+.1} nats on left-out blocks",
         gain.cross_validated_log_score_nats
     );
-    let what = match has_random_walk(result) {
-        true => left_out,
-        false => format!(
+    let shown = gain.free_run_rms_g.filter(|_| !has_random_walk(result));
+    let what = match shown {
+        None => left_out,
+        Some(rms) => format!(
             "open-loop error {} → {} µg with it in the model (noise {}); {left_out}",
             micro(rms.before),
             micro(rms.after),
@@ -218,8 +213,9 @@ fn effect_on_fit(result: &DiagnosisResult, screen: &mut Screen) {
         ),
     };
     screen.fact("what it does", what);
-    if let Some(validation) = &gain.validation {
-        let error = &validation.compensation;
+    if let Some(validation) = &gain.validation
+        && let Some(error) = &validation.compensation
+    {
         screen.fact(
             "later record",
             format!(
@@ -247,16 +243,16 @@ fn effect_on_fit(result: &DiagnosisResult, screen: &mut Screen) {
 }
 
 /// The residual with all causes in the model.
-pub(super) fn remainder(result: &DiagnosisResult) -> String {
+pub(super) fn remainder(result: &Answer) -> String {
     let test = &result.remainder;
     match test.verdict {
-        ResidualVerdict::White => format!("nothing: innovations white ({})", p_value(test.p_value)),
+        ResidualVerdict::White => format!("nothing: innovations white ({})", tested(test.p_value)),
         ResidualVerdict::NotTested => format!("not tested for {}", test.description),
         ResidualVerdict::Unexplained => test.description.clone(),
     }
 }
 
-fn next_of_found(result: &DiagnosisResult, screen: &mut Screen) {
+fn next_of_found(result: &Answer, screen: &mut Screen) {
     let files = files(result);
     let causes: Vec<&str> = result
         .causes()
@@ -264,8 +260,11 @@ fn next_of_found(result: &DiagnosisResult, screen: &mut Screen) {
         .map(|finding| &*finding.effect)
         .collect();
     let is_one = result.records.is_empty();
-    let is_of_effects = |group: &Indistinguishable| group.relation != Relation::SetUps;
-    if result.cannot_tell.iter().any(is_of_effects) {
+    if result
+        .findings
+        .iter()
+        .any(|finding| !finding.alternatives.is_empty())
+    {
         plan(result, screen, "the run that would distinguish them");
     }
     if causes.is_empty() {
@@ -293,15 +292,12 @@ fn next_of_found(result: &DiagnosisResult, screen: &mut Screen) {
 }
 
 /// The next step that plans a run.
-pub(super) fn plan(result: &DiagnosisResult, screen: &mut Screen, why: &str) {
+pub(super) fn plan(result: &Answer, screen: &mut Screen, why: &str) {
     screen.then(format!("gyrocal plan {}", files(result)), why);
 }
 
-fn unexplained(result: &DiagnosisResult) -> Screen {
+fn unexplained(result: &Answer) -> Screen {
     let test = &result.remainder;
-    if test.verdict != ResidualVerdict::Unexplained {
-        return not_settled(result);
-    }
     let mut screen = Screen::new(
         Standing::Bad,
         "UNEXPLAINED",
@@ -312,7 +308,7 @@ fn unexplained(result: &DiagnosisResult) -> Screen {
         "how sure",
         format!(
             "{}; {} of sound records would show any effect by chance",
-            p_value(test.p_value),
+            tested(test.p_value),
             percent(result.false_alarm_probability)
         ),
     );
@@ -340,12 +336,8 @@ fn unexplained(result: &DiagnosisResult) -> Screen {
 }
 
 /// A search that ended at its budget before it named anything.
-fn not_settled(result: &DiagnosisResult) -> Screen {
-    let mut screen = Screen::new(
-        Standing::Bad,
-        "NOT SETTLED",
-        "effects of the catalogue were found and not kept, or not compared to the end",
-    );
+fn not_settled(result: &Answer) -> Screen {
+    let mut screen = Screen::new(Standing::Bad, "NOT SETTLED", verdict::not_settled(result));
     screen.fact("left over", remainder(result));
     screen.fact(
         "coefficients",
@@ -358,7 +350,7 @@ fn not_settled(result: &DiagnosisResult) -> Screen {
     screen
 }
 
-fn wrong_setup(result: &DiagnosisResult) -> Screen {
+fn wrong_setup(result: &Answer) -> Screen {
     let mut screen = Screen::new(
         Standing::Bad,
         "SET-UP WRONG",

@@ -28,3 +28,12 @@ pub fn counted(count: usize, thing: &str) -> String {
     let plural = if count == 1 { "" } else { "s" };
     format!("{count} {thing}{plural}")
 }
+
+/// What stands in the place of a p-value that was not computed.
+pub const NO_P: &str = "p not computed for the final model";
+
+/// A p-value in words.
+#[must_use]
+pub fn tested(p: Option<f64>) -> String {
+    p.map_or_else(|| NO_P.to_owned(), format::p_value)
+}

@@ -3,20 +3,20 @@
 use gyrocal_record::printable_line;
 
 use super::catalogue::has_random_walk;
-use crate::result::{CoefficientShift, DiagnosisResult, Gain, Prediction};
+use gyrocal_answer::{Answer, CoefficientShift, Gain, Prediction};
 
 /// Coefficient changes that a paragraph names; the table shows all of them.
 const SHIFTS_SHOWN: usize = 3;
 
 /// Gain on the record itself, and on a later one if there is one.
-pub(super) fn paragraphs(result: &DiagnosisResult) -> impl Iterator<Item = String> {
+pub(super) fn paragraphs(result: &Answer) -> impl Iterator<Item = String> {
     let gain = result.gain.as_ref();
     gain.map(|gain| on_the_record(result, gain))
         .into_iter()
         .chain(later(result))
 }
 
-fn on_the_record(result: &DiagnosisResult, gain: &Gain) -> String {
+fn on_the_record(result: &Answer, gain: &Gain) -> String {
     let nats = gain.cross_validated_log_score_nats;
     let folds = gain.block_log_score_nats.len();
     let effects = gain.effects.join(", ");
@@ -41,13 +41,13 @@ fn on_the_record(result: &DiagnosisResult, gain: &Gain) -> String {
              model."
         )
     };
-    let rms = gain.free_run_rms_g;
     let mut shifts: Vec<_> = gain.coefficient_shift.iter().collect();
     shifts.sort_by(|a, b| b.in_sigmas.abs().total_cmp(&a.in_sigmas.abs()));
     let shifts: Vec<String> = shifts.into_iter().take(SHIFTS_SHOWN).map(shifted).collect();
-    let simulation = match has_random_walk(result) {
-        true => String::new(),
-        false => format!(
+    let shown = gain.free_run_rms_g.filter(|_| !has_random_walk(result));
+    let simulation = match shown {
+        None => String::new(),
+        Some(rms) => format!(
             " Open-loop simulation error (no measurement updates): {:.2e} g rms, was {:.2e} g; \
              accelerometer noise {:.2e} g.",
             rms.after, rms.before, rms.noise
@@ -76,7 +76,7 @@ fn shifted(shift: &CoefficientShift) -> String {
 }
 
 /// Validation on a later record, if one was given.
-fn later(result: &DiagnosisResult) -> Option<String> {
+fn later(result: &Answer) -> Option<String> {
     result.later_record.as_ref()?;
     let input = |place: usize, otherwise: &'static str| {
         let input = result.manifest.inputs.get(place);
@@ -96,7 +96,9 @@ fn later(result: &DiagnosisResult) -> Option<String> {
     } else {
         format!("the extended model does not improve the predictive log score ({nats:.1} nats)")
     };
-    let error = &validation.compensation;
+    let Some(error) = &validation.compensation else {
+        return Some(format!("Validation on {later}: {score}."));
+    };
     Some(format!(
         "Validation on {later}: {score}. Attitude error after {:.1} h of compensation with the \
          coefficients of {first}: {:.2} arcmin with the extended model, {:.2} arcmin with the nominal \

@@ -5,29 +5,41 @@ use std::collections::BTreeMap;
 use gyrocal_statistics::format::percent;
 
 use super::Block;
-use crate::result::{DiagnosisResult, Experiment, ExperimentKind, NotTestedReason};
+use gyrocal_answer::{Answer, Experiment, ExperimentKind, NotTestedReason};
 
 /// Groups of indistinguishable effects, each with the experiment that would distinguish them.
-pub(super) fn indistinguishable(result: &DiagnosisResult) -> Option<Block> {
-    (!result.cannot_tell.is_empty()).then(|| Block::List {
+pub(super) fn indistinguishable(result: &Answer) -> Option<Block> {
+    let entries = groups(result);
+    (!entries.is_empty()).then(|| Block::List {
         title: "Not distinguishable, and the experiment that would distinguish them:".to_owned(),
-        entries: result
-            .cannot_tell
-            .iter()
-            .map(|group| {
-                format!(
-                    "{}: {}. Experiment: {}.",
-                    group.members.join(", "),
-                    group.why,
-                    group.would_separate
-                )
-            })
+        entries: entries
+            .into_iter()
+            .map(|[members, why, words]| format!("{members}: {why}. Experiment: {words}."))
             .collect(),
     })
 }
 
+/// Groups of effects and of set-ups that the record does not distinguish: their names, why, and the experiment that
+/// would distinguish them.
+#[must_use]
+pub fn groups(result: &Answer) -> Vec<[String; 3]> {
+    let effects = result.findings.iter().flat_map(|finding| {
+        finding.separations.iter().map(|one| {
+            let others = finding.of_kind(one.from).map(|other| &*other.effect);
+            let members: Vec<&str> = core::iter::once(&*finding.effect).chain(others).collect();
+            [members.join(", "), one.why.clone(), one.words.clone()]
+        })
+    });
+    let set_ups = result.set_ups.iter();
+    let set_ups = set_ups.map(|one| {
+        let words = one.would_separate.clone();
+        [one.members.join(", "), one.why.clone(), words]
+    });
+    effects.chain(set_ups).collect()
+}
+
 /// Effects that were not tested or are not detectable, by reason.
-pub(super) fn untested(result: &DiagnosisResult) -> Option<Block> {
+pub(super) fn untested(result: &Answer) -> Option<Block> {
     let mut by_reason: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
     for effect in &result.not_searched {
         by_reason

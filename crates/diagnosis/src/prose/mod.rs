@@ -1,6 +1,6 @@
 //! The sentences and tables of an answer, as plain data.
 //!
-//! Everything here is made from [`crate::result`] alone, so that a terminal, a report and a program
+//! Everything here is made from [`gyrocal_answer`] alone, so that a terminal, a report and a program
 //! in another language say the same words. [`diagnosis`] gives all of it in reading order; whoever
 //! shows it breaks lines and draws tables. [`first_screen`] gives what a person reads first.
 
@@ -19,15 +19,15 @@ mod verdict;
 
 use serde::Serialize;
 
-use crate::result::{DiagnosisResult, Verdict};
+use gyrocal_answer::{Answer, Verdict};
 
 pub use catalogue::{explained, is_correlation, tested, typical_size};
 pub use findings::{likelihood, parameter_values};
 pub use first_screen::{first_screen, may_also_be};
-pub use format::counted;
+pub use format::{NO_P, counted, tested as tested_p};
 pub use limits::{
-    SET_UPS_WITHOUT_ANGLES, near_twins, not_tested, time_is_temperature, why_not_distinguished,
-    would_distinguish,
+    SET_UPS_WITHOUT_ANGLES, groups, near_twins, not_tested, time_is_temperature,
+    why_not_distinguished, would_distinguish,
 };
 pub use records::files;
 pub use screen::{
@@ -35,7 +35,7 @@ pub use screen::{
     record_and_bench,
 };
 pub use tests::residual_description;
-pub use verdict::setup;
+pub use verdict::{not_settled, setup};
 
 /// A piece of an answer.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -107,7 +107,7 @@ impl Column {
 /// The whole answer in reading order: record, verdict, magnitude test, findings, limits, gain,
 /// residual test, tables.
 #[must_use]
-pub fn diagnosis(result: &DiagnosisResult) -> Vec<Block> {
+pub fn diagnosis(result: &Answer) -> Vec<Block> {
     let mut blocks = vec![
         Block::Paragraph(verdict::record(result)),
         Block::Paragraph(verdict::verdict(result)),

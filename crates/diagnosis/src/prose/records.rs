@@ -4,7 +4,7 @@ use gyrocal_statistics::format::with_sigma;
 
 use super::screen::{input_files, record_and_bench};
 use super::{Column, Table};
-use crate::result::{DiagnosisResult, Finding, FindingKind, SizeChoice, Verdict};
+use gyrocal_answer::{Answer, Finding, FindingKind, SizeChoice, Verdict};
 
 /// Whether an effect has one size in all records, and its sizes in each.
 pub(super) fn sizes(finding: &Finding) -> Option<String> {
@@ -39,7 +39,7 @@ pub(super) fn sizes(finding: &Finding) -> Option<String> {
 }
 
 /// Each record with what it tells alone.
-pub(super) fn table(result: &DiagnosisResult) -> Option<Table> {
+pub(super) fn table(result: &Answer) -> Option<Table> {
     if result.records.is_empty() {
         return None;
     }
@@ -58,7 +58,9 @@ pub(super) fn table(result: &DiagnosisResult) -> Option<Table> {
                     (index + 1).to_string(),
                     one.name.clone(),
                     one.record.rows.to_string(),
-                    alone(&one.alone),
+                    one.alone
+                        .as_ref()
+                        .map_or_else(|| one.why_not_alone.clone(), alone),
                 ]
             })
             .collect(),
@@ -66,22 +68,26 @@ pub(super) fn table(result: &DiagnosisResult) -> Option<Table> {
 }
 
 /// The answer of a record alone, in a few words.
-fn alone(result: &DiagnosisResult) -> String {
+fn alone(result: &Answer) -> String {
     match result.verdict {
         Verdict::Clean if result.hides_most() => "too short to tell".to_owned(),
         Verdict::Clean => "no fault found".to_owned(),
         Verdict::Unexplained => "unexplained".to_owned(),
         Verdict::Setup => "wrong set-up".to_owned(),
-        Verdict::EffectsFound => {
+        _ => {
             let findings = result.findings.iter();
             let ids: Vec<&str> = findings.map(|finding| &*finding.effect).collect();
-            ids.join(", ")
+            match (result.verdict, ids.is_empty()) {
+                (Verdict::NotSettled, true) => "not settled".to_owned(),
+                (Verdict::NotSettled, false) => format!("{} (not settled)", ids.join(", ")),
+                _ => ids.join(", "),
+            }
         }
     }
 }
 
 /// Words of the first screen: what each record tells of the causes, or that none shows any alone.
-pub(super) fn fact(result: &DiagnosisResult) -> String {
+pub(super) fn fact(result: &Answer) -> String {
     let causes = result.of_kind(FindingKind::Cause);
     let sizes: Vec<String> = causes.filter_map(sizes).collect();
     sizes.join("; ")
@@ -90,10 +96,10 @@ pub(super) fn fact(result: &DiagnosisResult) -> String {
 /// The files of a result as arguments of `calibrate` and `diagnose`, as a shell reads them: records, bench files
 /// and, where there are, axes of strapdown units and the map of columns.
 #[must_use]
-pub fn files(result: &DiagnosisResult) -> String {
+pub fn files(result: &Answer) -> String {
     let inputs = &result.manifest.inputs;
     input_files(inputs).unwrap_or_else(|| {
-        let axes = match result.strapdown {
+        let axes = match result.is_strapdown() {
             true => " --gyro-axes AXES.csv",
             false => "",
         };

@@ -1,14 +1,14 @@
 //! The tables of an answer.
 
-use gyrocal_record::{AXES, NoiseRatioReport};
+use gyrocal_record::AXES;
 use gyrocal_statistics::format::{self, p_cell};
 
 use super::catalogue::is_correlation;
 use super::findings::{likelihood, value};
 use super::format::{short, with_sigma};
 use super::{Block, Column, Table};
-use crate::result::{
-    CoefficientEstimate, Coefficients, DiagnosisResult, Finding, FindingKind, Gain, Residuals,
+use gyrocal_answer::{
+    Answer, CoefficientEstimate, Coefficients, Finding, FindingKind, Gain, NoiseLevel, Residuals,
 };
 
 /// Rows of the ranking that are shown.
@@ -18,7 +18,7 @@ const TOP: usize = 12;
 const UNDETERMINED: f64 = 100.0;
 
 /// All tables.
-pub(super) fn all(result: &DiagnosisResult) -> impl Iterator<Item = Block> {
+pub(super) fn all(result: &Answer) -> impl Iterator<Item = Block> {
     let tables = [
         findings(result),
         result.coefficients.as_ref().and_then(coefficients),
@@ -33,7 +33,7 @@ pub(super) fn all(result: &DiagnosisResult) -> impl Iterator<Item = Block> {
     tables.into_iter().flatten().map(Block::Table)
 }
 
-fn findings(result: &DiagnosisResult) -> Option<Table> {
+fn findings(result: &Answer) -> Option<Table> {
     let columns = vec![
         Column::words("effect"),
         Column::words("parameter"),
@@ -48,7 +48,9 @@ fn findings(result: &DiagnosisResult) -> Option<Table> {
         let mut head = [
             finding.effect.clone(),
             format!("{:.1}", finding.z),
-            p_cell(finding.p_value),
+            finding
+                .p_value
+                .map_or_else(|| "not computed".to_owned(), p_cell),
             gain(finding),
         ];
         let parameters = finding.parameters.iter().map(|parameter| {
@@ -181,7 +183,7 @@ fn residuals(shown: &Residuals, duration_h: f64) -> Table {
     }
 }
 
-fn ranking(result: &DiagnosisResult) -> Option<Table> {
+fn ranking(result: &Answer) -> Option<Table> {
     let all = &result.ranking;
     let threshold = result.threshold.map_or_else(String::new, |threshold| {
         format!("; detection threshold {threshold:.1}")
@@ -213,15 +215,13 @@ fn ranking(result: &DiagnosisResult) -> Option<Table> {
 }
 
 /// Role of a ranked effect in the answer.
-fn role(result: &DiagnosisResult, effect: &str) -> String {
+fn role(result: &Answer, effect: &str) -> String {
     for finding in &result.findings {
         if finding.effect == effect {
             return "detected".to_owned();
         }
-        if finding.equivalents.iter().any(|e| e.effect == effect) {
-            return format!("exact equivalent of {}", finding.effect);
-        }
-        if let Some(other) = finding.alternatives.iter().find(|a| a.effect == effect) {
+        let mut others = finding.alternatives.iter();
+        if let Some(other) = others.find(|other| other.effect == effect) {
             return format!("alternative to {}, {}", finding.effect, likelihood(other));
         }
     }
@@ -258,36 +258,41 @@ fn shifts(gain: &Gain) -> Table {
     }
 }
 
-fn noise(result: &DiagnosisResult) -> Option<Table> {
-    let noise = result.noise.as_ref()?;
+fn noise(result: &Answer) -> Option<Table> {
     let extended = result.coefficients.as_ref();
     let model = if extended.is_some_and(|coefficients| coefficients.extended.is_some()) {
         "extended model"
     } else {
         "nominal model"
     };
-    let row = |name: &str, ratios: &[NoiseRatioReport; 3]| {
-        let cells = ratios.iter().map(interval);
-        core::iter::once(name.to_owned()).chain(cells).collect()
+    // Channels of a sensor are in the order of the axes.
+    let row = |name: &str, sensor: &str| -> Vec<String> {
+        let own = result
+            .noise
+            .iter()
+            .filter(|level| level.channel.starts_with(sensor));
+        core::iter::once(name.to_owned())
+            .chain(own.map(interval))
+            .collect()
     };
     // The likelihood of white noise takes the slow part of correlated noise for that of the gyros.
     let mut of_noise = result.of_kind(FindingKind::Noise);
     let is_correlated = of_noise.any(|finding| is_correlation(&finding.effect));
-    let gyros = (!is_correlated).then(|| row("gyros", &noise.gyro));
+    let gyros = (!is_correlated).then(|| row("gyros", "gyro_"));
     let of_gyros = match is_correlated {
         true => "; no row for the gyros, as the noise of the accelerometers is correlated",
         false => "",
     };
-    Some(Table {
+    (!result.noise.is_empty()).then(|| Table {
         title: format!("Estimated / declared noise (95 % CI), {model}{of_gyros}:"),
         columns: by_axis(),
-        rows: core::iter::once(row("accelerometers", &noise.accel))
+        rows: core::iter::once(row("accelerometers", "accel_"))
             .chain(gyros)
             .collect(),
     })
 }
 
-fn interval(found: &NoiseRatioReport) -> String {
+fn interval(found: &NoiseLevel) -> String {
     let [low, high] = found.interval;
     if high <= UNDETERMINED * low {
         format!("{:.3} ({low:.3} to {high:.3})", found.ratio)

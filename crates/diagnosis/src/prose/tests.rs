@@ -1,11 +1,11 @@
 //! The tests beside the search: magnitude, filter, whiteness, Allan deviation, noise audit.
 
 use gyrocal_record::AXES;
-use gyrocal_statistics::format::{p_bound, p_value};
+use gyrocal_statistics::format::p_bound;
 
-use super::format::{counted, duration, short, with_sigma};
-use crate::result::{
-    AllanCourse, DiagnosisResult, FindingKind, ResidualTest, ResidualVerdict, UnmodelledPattern,
+use super::format::{counted, duration, short, tested, with_sigma};
+use gyrocal_answer::{
+    AllanCourse, Answer, FindingKind, ResidualTest, ResidualVerdict, UnmodelledPattern,
     UnmodelledTerm, Verdict,
 };
 
@@ -13,7 +13,7 @@ use crate::result::{
 const DETECTABLE_SIGMAS: f64 = 4.0;
 
 /// Magnitude test of specific force.
-pub(super) fn magnitude(result: &DiagnosisResult) -> String {
+pub(super) fn magnitude(result: &Answer) -> String {
     let Some(test) = &result.norm else {
         return "Specific-force magnitude test: not made, too few rows have all three axes."
             .to_owned();
@@ -43,7 +43,7 @@ pub(super) fn magnitude(result: &DiagnosisResult) -> String {
 }
 
 /// Consistency test of another filter.
-pub(super) fn filter(result: &DiagnosisResult) -> Option<String> {
+pub(super) fn filter(result: &Answer) -> Option<String> {
     let test = result.filter.as_ref()?;
     let [low, high] = test.nis_band;
     let reference = test.reference_nis_mean;
@@ -71,9 +71,9 @@ pub(super) fn filter(result: &DiagnosisResult) -> Option<String> {
 }
 
 /// Whiteness of the innovations.
-pub(super) fn whiteness(result: &DiagnosisResult) -> String {
+pub(super) fn whiteness(result: &Answer) -> String {
     let test = &result.remainder;
-    let p = p_value(test.p_value);
+    let p = tested(test.p_value);
     match test.verdict {
         ResidualVerdict::Unexplained => format!(
             "Whiteness: failed ({p}). Unexplained: {}. No effect of the catalogue does this; \
@@ -103,7 +103,7 @@ pub(super) fn whiteness(result: &DiagnosisResult) -> String {
 }
 
 /// Allan deviation of the innovations.
-pub(super) fn allan(result: &DiagnosisResult) -> String {
+pub(super) fn allan(result: &Answer) -> String {
     let Some(test) = &result.allan else {
         return "Allan deviation: not computed, no stretch of rows without a gap and with all axes \
                 is long enough."
@@ -144,7 +144,7 @@ pub(super) fn allan(result: &DiagnosisResult) -> String {
 }
 
 /// Noise audit of the accelerometers.
-pub(super) fn noise_audit(result: &DiagnosisResult) -> Option<String> {
+pub(super) fn noise_audit(result: &Answer) -> Option<String> {
     let audit = result.noise_audit.as_ref()?;
     let mut parts = vec![match audit.correlation {
         Some(found) => format!(
@@ -228,7 +228,7 @@ fn unmodelled(term: &UnmodelledTerm) -> String {
         _ => term.channel.clone(),
     };
     let (size, unit) = (term.size, &term.unit);
-    match (term.pattern, term.period_h, &term.force_axis) {
+    match (term.pattern, term.period_h, &term.depends_on) {
         (UnmodelledPattern::Line, Some(period_h), _) => format!(
             "a line in the {channel} with a period of {period_h:.2} h and an amplitude of {size:.2e} \
              {unit}"

@@ -1,18 +1,18 @@
 //! The record and the verdict on it.
 
 use gyrocal_record::printable_line;
-use gyrocal_statistics::format::{p_value, percent};
+use gyrocal_statistics::format::percent;
 
 use super::Block;
-use super::format::counted;
+use super::format::{counted, tested};
 use super::screen::few;
-use crate::result::{DiagnosisResult, FindingKind, ResidualVerdict, SetupProblem, Verdict};
+use gyrocal_answer::{Answer, Finding, FindingKind, ResidualVerdict, SetupProblem, Verdict};
 
 /// Records that are named.
 const RECORDS_SHOWN: usize = 4;
 
 /// The record and its size.
-pub(super) fn record(result: &DiagnosisResult) -> String {
+pub(super) fn record(result: &Answer) -> String {
     if !result.records.is_empty() {
         let names: Vec<&str> = result.records.iter().map(|one| &*one.name).collect();
         return format!(
@@ -33,7 +33,7 @@ pub(super) fn record(result: &DiagnosisResult) -> String {
 }
 
 /// The verdict with its error probabilities.
-pub(super) fn verdict(result: &DiagnosisResult) -> String {
+pub(super) fn verdict(result: &Answer) -> String {
     let alarm = format!(
         "false-alarm rate of the diagnosis {}",
         percent(result.false_alarm_probability)
@@ -42,15 +42,13 @@ pub(super) fn verdict(result: &DiagnosisResult) -> String {
         Verdict::EffectsFound => format!(
             "Model mismatch detected: {} (family-wise {}; {alarm}).",
             counted(result.findings.len(), "effect"),
-            p_value(least_p_value(result)),
+            tested(least_p_value(result)),
         ),
-        Verdict::Unexplained if result.remainder.verdict != ResidualVerdict::Unexplained => {
-            "Not settled: the search ended at its budget of work, with no effect named.".to_owned()
-        }
+        Verdict::NotSettled => format!("Not settled: {} ({alarm}).", not_settled(result)),
         Verdict::Unexplained => format!(
             "Model mismatch detected: no effect of the catalogue explains it (family-wise {}; \
              {alarm}).",
-            p_value(result.remainder.p_value)
+            tested(result.remainder.p_value)
         ),
         Verdict::Setup => "Error of the set-up: the record was not diagnosed.".to_owned(),
         Verdict::Clean => {
@@ -76,7 +74,7 @@ pub(super) fn verdict(result: &DiagnosisResult) -> String {
 }
 
 /// The caveat on a search that ended at its budget of work.
-pub(super) fn unfinished(result: &DiagnosisResult) -> Option<String> {
+pub(super) fn unfinished(result: &Answer) -> Option<String> {
     (!result.search_complete).then(|| {
         "The search ended at its budget of work: there may be more in the record than these effects, and \
          effects that they were not compared with. Names, sizes and coefficients are what was found until \
@@ -86,25 +84,34 @@ pub(super) fn unfinished(result: &DiagnosisResult) -> Option<String> {
     })
 }
 
-/// The smallest p-value: of the diagnosis itself, and of a filter only if there is nothing else.
-fn least_p_value(result: &DiagnosisResult) -> f64 {
-    let least = |of_filter: bool| {
-        let mut all = result.findings.iter();
-        let first = all
-            .clone()
-            .any(|f| (f.kind == FindingKind::Filter) == of_filter);
-        first.then(|| {
-            all.by_ref()
-                .filter(|finding| (finding.kind == FindingKind::Filter) == of_filter)
-                .map(|finding| finding.p_value)
-                .fold(1.0, f64::min)
-        })
+/// Why names are not settled.
+#[must_use]
+pub fn not_settled(result: &Answer) -> String {
+    let cut = (!result.search_complete).then_some("the search ended at its budget of work");
+    let left = result
+        .is_unexplained()
+        .then_some("what is left is not white");
+    let why: Vec<&str> = cut.into_iter().chain(left).collect();
+    let found = match result.findings.len() {
+        0 => "no effect is named".to_owned(),
+        count => format!("{} so far", counted(count, "effect")),
     };
-    least(false).or_else(|| least(true)).unwrap_or(1.0)
+    format!("{found}, {}", why.join(", and "))
+}
+
+/// The smallest p-value: of the diagnosis itself, and of a filter only if there is nothing else.
+fn least_p_value(result: &Answer) -> Option<f64> {
+    let (filter, own): (Vec<&Finding>, Vec<&Finding>) = result
+        .findings
+        .iter()
+        .partition(|finding| finding.kind == FindingKind::Filter);
+    let all = if own.is_empty() { filter } else { own };
+    let all = all.into_iter().filter_map(|finding| finding.p_value);
+    all.reduce(f64::min)
 }
 
 /// The caveat on the verdict of a short record.
-fn low_power(result: &DiagnosisResult) -> String {
+fn low_power(result: &Answer) -> String {
     match result.low_power().len() {
         0 => String::new(),
         count => format!(

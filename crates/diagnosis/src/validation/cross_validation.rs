@@ -6,7 +6,7 @@ use gyrocal_calibration::{CalibrationError, FittedPlatform, work};
 use gyrocal_hypothesis::Searched;
 
 use super::block_scores::{block_log_scores, forward_log_scores};
-use crate::result::Prediction;
+use gyrocal_answer::Prediction;
 
 /// Work of the elimination over that of one pass over the record with all signatures, beyond which no further
 /// model is scored. That of one cause beside walks takes eight passes in the mean.

@@ -1,9 +1,7 @@
 //! Effects hidden in simulated records: each kind of search finds its own.
 
-use gyrocal_diagnosis::result::{
-    DiagnosisResult, FindingKind, Prediction, SetMember, UnmodelledPattern,
-};
-use gyrocal_diagnosis::{DiagnoseOptions, Verdict, diagnose};
+use gyrocal_answer::{Answer, FindingKind, Prediction, SetMember, UnmodelledPattern, Verdict};
+use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
 use gyrocal_record::{Bench, Record};
 use gyrocal_truth::{
     Coefficients, Hidden, InitialAttitude, Moment, Scenario, Term, simulate, simulate_with,
@@ -24,7 +22,7 @@ fn record(seed: u64, effect: &str, parameters: &[(&str, f64)]) -> (Record, Bench
 }
 
 /// The diagnosis of a scenario with the drift of the paper and any attitude.
-fn diagnosed(scenario: Scenario) -> DiagnosisResult {
+fn diagnosed(scenario: Scenario) -> Answer {
     let simulation = simulate(&Scenario {
         coefficients: Coefficients::PAPER_LIKE,
         initial: InitialAttitude::Random,
@@ -280,7 +278,7 @@ fn a_term_beside_a_random_walk_is_found_and_judged_forward() {
     let gain = found.gain.unwrap();
     assert_eq!(gain.prediction, Prediction::Forward);
     // The first block is predicted from nothing.
-    assert!(gain.block_log_score_nats[0].abs() < f64::EPSILON);
+    assert!(gain.block_log_score_nats[0].unwrap().abs() < f64::EPSILON);
     let term = &found.findings[0];
     assert_eq!(term.accepted, Some(true));
     let parameter = &term.parameters[0];
@@ -340,7 +338,7 @@ fn what_the_catalogue_does_not_hold_has_no_name_and_is_told() {
                 assert_eq!(found.verdict, Verdict::Unexplained);
             }
             (UnmodelledPattern::Curve, None) => {
-                assert_eq!(strongest.force_axis.as_deref(), axis, "{effect}");
+                assert_eq!(strongest.depends_on.as_deref(), axis, "{effect}");
             }
             other => panic!("{effect}: {other:?}"),
         }
@@ -356,7 +354,7 @@ fn coefficients_hold_for_the_equivalent_that_is_the_cause() {
     let found = found.result;
     let cause = found.causes().next().unwrap();
     let mut names = vec![cause.effect.clone()];
-    names.extend(cause.equivalents.iter().map(|e| e.effect.clone()));
+    names.extend(cause.equivalents().map(str::to_owned));
     assert!(names.contains(&"gyro_x.g_zz".to_owned()), "{names:?}");
     let coefficients = found.coefficients.as_ref().unwrap();
     for effect in &names {

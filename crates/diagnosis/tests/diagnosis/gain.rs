@@ -165,26 +165,26 @@ fn a_short_later_record_lets_one_expect_little() {
 }
 
 #[test]
-fn a_shift_is_known_as_well_as_the_effect_that_makes_it() {
+fn a_shift_is_that_of_its_own_row() {
     let hidden = [Hidden::new("gyro_y.g_z", &[("size", 0.004)]).unwrap()];
     let first = simulation(9, 2.0, &hidden);
     let found = diagnose(&first.record, &first.bench, &DiagnoseOptions::default()).unwrap();
-    let found = found.result;
-    assert_eq!(found.findings.len(), 1);
-    let size = &found.findings[0].parameters[0];
-    let relative = size.sigma.unwrap() / size.estimate.abs();
-    let gain = found.gain.unwrap();
-    let mut compared = 0;
-    for shift in &gain.coefficient_shift {
-        // A shift is the size times a constant of the record. Where it is small its variance is
-        // the rounded difference of two that are nearly equal.
-        if shift.in_sigmas.abs() > 1.0 {
-            compared += 1;
-            let found = shift.sigma / shift.shift.abs();
-            assert!((found / relative - 1.0).abs() < 0.1, "{shift:?} {relative}");
-            let [low, high] = shift.interval;
-            assert!((high - low - 3.92 * shift.sigma).abs() < 1e-3 * shift.sigma);
-        }
+    let (gain, all) = (
+        found.result.gain.unwrap(),
+        found.result.coefficients.unwrap(),
+    );
+    let rows = all.nominal.iter().zip(all.extended.as_ref().unwrap());
+    assert_eq!(gain.coefficient_shift.len(), all.nominal.len());
+    for ((nominal, extended), shift) in rows.zip(&gain.coefficient_shift) {
+        assert_eq!(shift.coefficient, nominal.name);
+        // The same operations on the same numbers, but for the root of a square.
+        let close = |one: f64, other: f64| (one - other).abs() < 1e-9 * (1e-9 + other.abs());
+        let own = extended.estimate - nominal.estimate;
+        assert!(close(shift.shift, own), "{shift:?}");
+        assert!(close(shift.in_sigmas, own / nominal.sigma), "{shift:?}");
+        let variance = (nominal.sigma.powi(2) - extended.sigma.powi(2)).abs();
+        assert!(close(shift.sigma.powi(2), variance), "{shift:?}");
+        let [low, high] = shift.interval;
+        assert!((high - low - 3.92 * shift.sigma).abs() < 1e-3 * shift.sigma);
     }
-    assert!(compared > 0, "{:?}", gain.coefficient_shift);
 }

@@ -1,14 +1,14 @@
 //! Records that no model fits: what is said of them, and what that may cost.
 
+use gyrocal_answer::{Answer, Verdict};
 use gyrocal_calibration::work;
 use gyrocal_diagnosis::prose::{first_screen, may_also_be};
-use gyrocal_diagnosis::result::DiagnosisResult;
-use gyrocal_diagnosis::{DiagnoseOptions, Verdict, diagnose};
+use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{Coefficients, Hidden, InitialAttitude, Scenario, simulate};
 
 /// The diagnosis of a day of two-minute means with effects hidden, and its work.
-fn diagnosed(seed: u64, hidden: Vec<Hidden>) -> (DiagnosisResult, u64) {
+fn diagnosed(seed: u64, hidden: Vec<Hidden>) -> (Answer, u64) {
     let simulation = simulate(&Scenario {
         seed,
         coefficients: Coefficients::PAPER_LIKE,
@@ -64,6 +64,7 @@ fn thirty_knocks_take_no_more_than_the_limit() {
 fn a_cut_search_is_told() {
     let (mut cut, _) = diagnosed(1, knocks(30));
     cut.search_complete = false;
+    cut.verdict = Verdict::NotSettled;
     let cut = &cut;
     let set = may_also_be(cut);
     assert!(!set.contains(" at 9"), "{set}");
@@ -76,8 +77,8 @@ fn a_cut_search_is_told() {
 fn a_cut_search_without_a_name_contradicts_nothing() {
     let (mut found, _) = diagnosed(1, Vec::new());
     assert_eq!(found.verdict, Verdict::Clean);
-    found.verdict = Verdict::Unexplained;
     found.search_complete = false;
+    found.verdict = Answer::judged(&found.findings, &found.remainder, found.search_complete);
     let screen = first_screen(&found);
     assert_eq!(screen.verdict, "NOT SETTLED");
     assert!(!screen.what.contains("contradicts"), "{}", screen.what);

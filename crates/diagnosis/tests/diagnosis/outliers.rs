@@ -1,7 +1,7 @@
 //! Gross errors in rows that the noise audit cannot test.
 
-use gyrocal_diagnosis::result::FindingKind;
-use gyrocal_diagnosis::{DiagnoseOptions, Verdict, diagnose};
+use gyrocal_answer::{FindingKind, Verdict};
+use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
 use gyrocal_truth::{Coefficients, Hidden, InitialAttitude, Scenario, Simulation, simulate};
 
 fn simulation(hidden: &[Hidden]) -> Simulation {

@@ -1,9 +1,9 @@
 //! Several records of one platform, diagnosed together.
 
+use gyrocal_answer::{Answer, SizeChoice, Verdict};
 use gyrocal_calibration::Run;
-use gyrocal_diagnosis::result::{DiagnosisResult, SizeChoice};
 use gyrocal_diagnosis::{
-    DiagnoseOptions, DiagnosisError, Gate, RecordToDiagnose, RecordsDiagnosis, Verdict, diagnose,
+    DiagnoseOptions, DiagnosisError, Gate, RecordToDiagnose, RecordsDiagnosis, diagnose,
     diagnose_records,
 };
 use gyrocal_setup::PlatformKind;
@@ -84,7 +84,7 @@ fn a_term_of_two_records_has_one_size_and_a_smaller_error() {
         assert!(sigmas(&found.together) < sigmas(alone));
     }
     let text = serde_json::to_string(result).unwrap();
-    let read: DiagnosisResult = serde_json::from_str(&text).unwrap();
+    let read: Answer = serde_json::from_str(&text).unwrap();
     assert_eq!(read, *result);
 }
 

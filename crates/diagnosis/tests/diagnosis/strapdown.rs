@@ -1,9 +1,10 @@
 //! Diagnosis in the axes of gyros that are fixed to a body, against a simulation of its own.
 
+use gyrocal_answer::{Answer, Verdict};
 use gyrocal_calibration::{CalibrationError, GyroAxes, Run};
 use gyrocal_diagnosis::{
-    DiagnoseOptions, Diagnosis, DiagnosisError, DiagnosisResult, Gate, RecordToDiagnose, Verdict,
-    diagnose, diagnose_gated, diagnose_records, prose,
+    DiagnoseOptions, Diagnosis, DiagnosisError, Gate, RecordToDiagnose, diagnose, diagnose_gated,
+    diagnose_records, prose,
 };
 use gyrocal_record::{Bench, Input, InputRole, Record};
 use gyrocal_setup::PlatformKind;
@@ -102,7 +103,7 @@ fn names(found: &Diagnosis<'_>, effect: &str) -> bool {
 }
 
 /// The files of a result of these inputs, as the next commands have them.
-fn files(mut result: DiagnosisResult, inputs: &str) -> String {
+fn files(mut result: Answer, inputs: &str) -> String {
     // The roles by the first letters: later ones begin with l.
     let role = |path: &str| match path.split('.').next().unwrap_or_default() {
         "lr" => InputRole::LaterRecord,
@@ -146,7 +147,7 @@ fn a_ramp_of_a_gyro_of_the_body_is_named_with_the_law_in_its_axes() {
     let unit = unit(attitude(3), 2.0, 1, with_ramp);
     let options = DiagnoseOptions::default();
     let found = diagnose_gated(unit.gate(&options), &unit.bench, &options).unwrap();
-    assert!(found.result.strapdown);
+    assert!(found.result.is_strapdown());
     assert_eq!(found.result.verdict, Verdict::EffectsFound);
     assert!(names(&found, "gyro_y.ramp"), "{:?}", found.result.findings);
     let cause = found.result.causes().next().unwrap();
@@ -166,7 +167,7 @@ fn a_ramp_of_a_gyro_of_the_body_is_named_with_the_law_in_its_axes() {
     // In the axes of the platform, which the body turns against, it is no ramp alone: no fit converges, more
     // is named, or something is left.
     if let Ok(platform) = diagnose(&unit.record, &unit.bench, &options) {
-        assert!(!platform.result.strapdown);
+        assert!(!platform.result.is_strapdown());
         let is_alone = platform.result.causes().count() == 1 && !platform.result.is_unexplained();
         assert!(!(names(&platform, "gyro_y.ramp") && is_alone));
     }
@@ -208,7 +209,7 @@ fn a_term_across_is_named_by_records_in_several_attitudes() {
         });
     let all = diagnose_records(records.collect(), &options, |_| ()).unwrap();
     let found = all.together;
-    assert!(found.result.strapdown);
+    assert!(found.result.is_strapdown());
     assert!(names(&found, "gyro_x.g_y"), "{:?}", found.result.findings);
     assert_eq!(
         files(

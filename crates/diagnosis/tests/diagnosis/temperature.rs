@@ -1,7 +1,7 @@
 //! Effects of temperature hidden in simulated records of three days.
 
+use gyrocal_answer::Answer;
 use gyrocal_calibration::Run;
-use gyrocal_diagnosis::result::DiagnosisResult;
 use gyrocal_diagnosis::{DiagnoseOptions, diagnose, fit_effects};
 use gyrocal_record::{Bench, Record};
 use gyrocal_statistics::deviates::Draw;
@@ -31,7 +31,7 @@ fn record(seed: u64, effect: &str, size: f64) -> (Record, Bench) {
 }
 
 /// The effects of the set of each finding.
-fn sets(result: &DiagnosisResult) -> Vec<Vec<&str>> {
+fn sets(result: &Answer) -> Vec<Vec<&str>> {
     let of_one = result.causes().map(|finding| {
         let others = finding.alternatives.iter();
         let others = others.map(|alternative| alternative.effect.as_str());
@@ -105,10 +105,11 @@ fn where_temperature_went_with_time_the_set_holds_both_and_says_so() {
     for id in ["gyro_x.ramp", "gyro_x.temperature"] {
         assert!(sets[0].contains(&id), "{sets:?}");
     }
-    let mut groups = result.cannot_tell.iter();
+    let findings = result.findings.iter();
+    let mut groups = findings.flat_map(|finding| &finding.separations);
     assert!(
         groups.any(|group| group.why.contains("time and temperature go together")),
         "{:?}",
-        result.cannot_tell
+        result.findings
     );
 }

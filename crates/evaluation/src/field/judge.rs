@@ -1,10 +1,9 @@
 //! A diagnosis held against the right answer.
 
 use gyrocal::effect::{EffectKind, Enters};
-use gyrocal_diagnosis::result::Finding;
-use gyrocal_diagnosis::{DiagnosisError, DiagnosisResult};
+use gyrocal_answer::{Answer, Finding, Subject};
+use gyrocal_diagnosis::DiagnosisError;
 use gyrocal_plant::PlantError;
-use gyrocal_plant::answer::Diagnosis as PlantDiagnosis;
 use gyrocal_record::AXES;
 use serde::{Deserialize, Serialize};
 
@@ -30,6 +29,8 @@ pub enum Judgement {
 pub(super) struct Told {
     names: Vec<Name>,
     error: Option<String>,
+    /// All of it; `None` if the diagnosis failed.
+    pub(super) answer: Option<Answer>,
 }
 
 /// One name, with the other members of its set.
@@ -42,31 +43,21 @@ pub(super) struct Name {
 }
 
 impl Told {
-    pub(super) fn of(found: Result<DiagnosisResult, DiagnosisError>) -> Self {
+    pub(super) fn of(found: Result<Answer, DiagnosisError>) -> Self {
         match found {
-            Ok(result) => Self::of_result(&result),
-            Err(DiagnosisError::Setup { result }) => Self::of_result(&result),
+            Ok(result) => Self::of_result(result),
+            Err(DiagnosisError::Setup { result }) => Self::of_result(*result),
             Err(DiagnosisError::OfRecord { source, .. }) => Self::of(Err(*source)),
             Err(DiagnosisError::SeveralPlatforms { .. }) => Self::set_up(SEVERAL),
             Err(error) => Self::failed(&error),
         }
     }
 
-    pub(super) fn of_plant(found: Result<PlantDiagnosis, PlantError>) -> Self {
-        let found = match found {
-            Ok(found) => found,
-            Err(error) => return Self::failed(&error),
-        };
-        let named = found.findings.iter().map(|one| {
-            let rivals = one.rivals.iter().map(|(id, _)| id);
-            Name {
-                id: one.effect.clone(),
-                set: rivals.chain(&one.equivalents).cloned().collect(),
-                is_physical: true,
-            }
-        });
-        let stated = found.findings.iter().filter_map(|one| one.none_of_these);
-        Self::with_unlisted(named.collect(), !found.unexplained.is_empty(), stated)
+    pub(super) fn of_plant(found: Result<Answer, PlantError>) -> Self {
+        match found {
+            Ok(answer) => Self::of_result(answer),
+            Err(error) => Self::failed(&error),
+        }
     }
 
     fn failed(error: &dyn core::error::Error) -> Self {
@@ -78,7 +69,10 @@ impl Told {
 
     /// Names without an error.
     pub(super) fn named(names: Vec<Name>) -> Self {
-        Self { names, error: None }
+        Self {
+            names,
+            ..Self::default()
+        }
     }
 
     /// An error of the set-up and nothing else.
@@ -86,12 +80,18 @@ impl Told {
         Self::named(vec![Name::plain(kind)])
     }
 
-    fn of_result(result: &DiagnosisResult) -> Self {
+    fn of_result(result: Answer) -> Self {
         let problems = result.setup.iter();
         let problems = problems.map(|problem| Name::plain(&problem.kind));
-        let names = problems.chain(result.findings.iter().map(Name::of));
+        let is_plant = matches!(result.subject, Subject::Plant(_));
+        let findings = result.findings.iter();
+        let names = problems.chain(findings.map(|finding| Name::of(finding, is_plant)));
         let stated = result.causes().filter_map(|cause| cause.none_of_these);
-        Self::with_unlisted(names.collect(), result.is_unexplained(), stated)
+        let told = Self::with_unlisted(names.collect(), result.is_unexplained(), stated);
+        Self {
+            answer: Some(result),
+            ..told
+        }
     }
 
     /// As `RecordScore::tells_of_another`.
@@ -107,9 +107,9 @@ impl Told {
     }
 
     /// The names, or the error.
-    pub(super) fn words(self) -> Vec<String> {
-        let names = self.names.into_iter().map(|name| name.id);
-        names.chain(self.error).collect()
+    pub(super) fn words(&self) -> Vec<String> {
+        let names = self.names.iter().map(|name| name.id.clone());
+        names.chain(self.error.clone()).collect()
     }
 }
 
@@ -122,13 +122,12 @@ impl Name {
         }
     }
 
-    fn of(finding: &Finding) -> Self {
-        let equivalents = finding.equivalents.iter().map(|other| &*other.effect);
-        let set = finding.set().chain(equivalents);
+    fn of(finding: &Finding, is_plant: bool) -> Self {
+        let set = finding.set().chain(finding.equivalents());
         Self {
             id: finding.effect.clone(),
             set: set.map(str::to_owned).collect(),
-            is_physical: is_physical(&finding.effect),
+            is_physical: is_plant || is_physical(&finding.effect),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Kinds of records of the servo of the examples, which a user's plant may be like.
 
-use gyrocal_plant::answer::Diagnosis;
+use gyrocal_answer::Answer;
 use gyrocal_plant::{LoadedPlant, PlantError, PlantRecord, SearchOptions, diagnose};
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_statistics::root_mean_square;
@@ -47,11 +47,7 @@ impl PlantKind {
     ];
 
     /// The diagnosis of the record of a seed.
-    pub(super) fn diagnosed(
-        &self,
-        plant: &LoadedPlant,
-        seed: u64,
-    ) -> Result<Diagnosis, PlantError> {
+    pub(super) fn diagnosed(&self, plant: &LoadedPlant, seed: u64) -> Result<Answer, PlantError> {
         let record = self.record(seed).prepared(plant.description(), self.name)?;
         Ok(diagnose(plant, record, None, &SearchOptions::default())?.answer)
     }

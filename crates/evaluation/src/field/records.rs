@@ -239,3 +239,37 @@ pub(super) fn second_in_other_unit(seed: u64) -> Result {
     values.for_each(|value| *value *= 9.806_65);
     Ok(made)
 }
+
+/// A record of 2 to 400 rows, of which up to 30 % are missing as a whole and up to 30 % of the values; one in three
+/// has its angles left out, one in three a noise that is three times the declared.
+pub(super) fn short(seed: u64) -> Result {
+    let mut scenario = any_scenario(seed, 0, LATITUDES_DEG);
+    let random = &mut Draw::new(seed, SIGNS);
+    let rows = random.log_uniform([2.0, 400.0]).floor();
+    scenario.interval_s = random.log_uniform([10.0, 1800.0]);
+    scenario.duration_s = (rows - 1.0) * scenario.interval_s;
+    if random.uniform() < 1.0 / 3.0 {
+        scenario.hidden = vec![Hidden::new("accel_x.noise", &[("ratio", 3.0)])?];
+    }
+    spoilt(seed, &scenario, |broken| {
+        if broken.random.uniform() < 1.0 / 3.0 {
+            leave_angles_out(&mut broken.bench);
+        }
+        let [rows, values] = [0; 2].map(|_| 0.3 * broken.random.uniform());
+        let mut kept = Record::default();
+        for row in 0..broken.record.len() {
+            // Two rows stay.
+            if row > 1 && broken.random.uniform() < rows {
+                continue;
+            }
+            let random = &mut broken.random;
+            let keep = |value| match random.uniform() < values {
+                true => f64::NAN,
+                false => value,
+            };
+            kept.time_s.push(broken.record.time_s[row]);
+            kept.accel_g.push(broken.record.accel_g[row].map(keep));
+        }
+        broken.record = kept;
+    })
+}

@@ -227,7 +227,7 @@ fn a_wrong_latitude_is_judged_by_its_strength() {
     let all = FieldPopulation::wrong_keys();
     let of = |name: &str| all.iter().find(|one| one.name == name).unwrap();
     // Times that begin at another number change nothing.
-    let same = (of("time_s +- 3600").job)(4).unwrap();
+    let (same, _) = (of("time_s +- 3600").job)(4).unwrap();
     assert!(same.strength.unwrap() < 0.1, "{same:?}");
     assert_eq!((same.judgement, same.told.len()), (Judgement::Right, 0));
     let keys = WrongKey::all();

@@ -115,8 +115,10 @@ fn gauge_of(plant: &LoadedPlant, record: PlantRecord, expected: &[&str]) -> Resu
     let [one] = directions.as_slice() else {
         return Ok(false);
     };
-    let parts = one.parts.iter().filter(|part| part.parameter.is_some());
-    let mut names: Vec<&str> = parts.map(|part| part.name.as_str()).collect();
+    let parameters = &plant.description().parameters;
+    let is_parameter = |name: &&str| parameters.iter().any(|own| own.id == *name);
+    let names = one.parts.iter().map(|part| part.name.as_str());
+    let mut names: Vec<&str> = names.filter(is_parameter).collect();
     names.sort_unstable();
     Ok(one.is_gauge && names == expected && held.len() == 1)
 }

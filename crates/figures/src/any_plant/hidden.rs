@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use gyrocal_answer::{Answer, Coefficients, Finding};
 use gyrocal_evaluation::Statistic;
-use gyrocal_plant::answer::{Diagnosis, Found};
 use gyrocal_plant::{LoadedPlant, SearchOptions, diagnose};
 use serde::{Deserialize, Serialize};
 
@@ -114,7 +114,7 @@ fn diagnosed(
     let (own, strength) = (setting.hidden.0, strength(&setting));
     let sets: Vec<Vec<String>> = answer.findings.iter().map(set).collect();
     let holds = answer.findings.iter().zip(&sets).any(|(found, set)| {
-        let mut all = set.iter().chain(&found.equivalents);
+        let mut all = set.iter().map(String::as_str).chain(found.equivalents());
         all.any(|id| id == own)
     });
     let beside_oracle = sets.first().and_then(|set| {
@@ -123,24 +123,25 @@ fn diagnosed(
         Some([set.iter().filter(lasting).count() as f64, oracle])
     });
     let is_named = sets.iter().any(|set| set[0] == own);
-    let later = answer.later_record.as_ref();
+    let gain = answer.gain.as_ref();
+    let later = gain.and_then(|gain| gain.validation.as_ref());
     let later = later.filter(|later| is_named && second.true_gain(later) >= LEAST_GAIN);
     let sizes = answer.findings.iter().filter_map(|found| {
-        let size = found.sizes.first()?;
-        Some((found.effect.clone(), size.value))
+        let size = found.parameters.first()?;
+        Some((found.effect.clone(), size.estimate))
     });
-    let parameters = answer.parameters.iter();
+    let parameters = answer.coefficients.iter().flat_map(Coefficients::best);
     Ok(Hidden {
         seed,
         effect: own.to_owned(),
         strength,
-        detected: !(answer.findings.is_empty() && answer.unexplained.is_empty()),
+        detected: answer.has_findings(),
         holds,
         beside_oracle,
         better: later.map(is_better),
         generated,
         parameters: parameters
-            .map(|one| (one.name.clone(), one.value))
+            .map(|one| (one.name.clone(), one.estimate))
             .collect(),
         sizes: sizes.collect(),
         seconds,
@@ -148,23 +149,20 @@ fn diagnosed(
     })
 }
 
-/// The name of an effect and those of its rivals.
-fn set(found: &Found) -> Vec<String> {
-    let rivals = found.rivals.iter().map(|(id, _)| id);
-    core::iter::once(&found.effect)
-        .chain(rivals)
-        .cloned()
-        .collect()
+/// The name of an effect and those of the others of its set.
+fn set(found: &Finding) -> Vec<String> {
+    found.set().map(str::to_owned).collect()
 }
 
 /// Whether two answers have the same names and sets, and the largest difference of a parameter or size over its
 /// standard deviation.
-fn compared(one: &Diagnosis, other: &Diagnosis) -> (bool, f64) {
-    let sets = |answer: &Diagnosis| -> Vec<_> { answer.findings.iter().map(set).collect() };
-    let numbers = |answer: &Diagnosis| -> Vec<[f64; 2]> {
-        let sizes = answer.findings.iter().flat_map(|found| &found.sizes);
-        let sizes = sizes.filter_map(|size| Some([size.value, size.sigma?]));
-        let parameters = answer.parameters.iter().map(|one| [one.value, one.sigma]);
+fn compared(one: &Answer, other: &Answer) -> (bool, f64) {
+    let sets = |answer: &Answer| -> Vec<_> { answer.findings.iter().map(set).collect() };
+    let numbers = |answer: &Answer| -> Vec<[f64; 2]> {
+        let sizes = answer.findings.iter().flat_map(|found| &found.parameters);
+        let sizes = sizes.filter_map(|size| Some([size.estimate, size.sigma?]));
+        let parameters = answer.coefficients.iter().flat_map(Coefficients::best);
+        let parameters = parameters.map(|one| [one.estimate, one.sigma]);
         parameters.chain(sizes).collect()
     };
     let (ours, theirs) = (numbers(one), numbers(other));

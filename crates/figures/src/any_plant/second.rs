@@ -1,6 +1,6 @@
 //! A second record of a plant, and what its true model gains there.
 
-use gyrocal_plant::answer::{Comparison, OutputError};
+use gyrocal_answer::{OutputError, Validation};
 use gyrocal_plant::{LoadedPlant, PlantError, PlantRecord};
 
 use super::simulated::{Setting, simulate};
@@ -18,9 +18,10 @@ pub(super) struct Second {
 }
 
 /// Whether simulations are nearer to the outputs with what was found, on average over outputs.
-pub(super) fn is_better(later: &Comparison) -> bool {
-    let ratio = |error: &OutputError| error.extended / error.nominal;
-    later.errors.iter().map(ratio).sum::<f64>() < later.errors.len() as f64
+pub(super) fn is_better(later: &Validation) -> bool {
+    let ratio = |error: &OutputError| Some(error.extended? / error.nominal?);
+    let ratios: Option<Vec<f64>> = later.open_loop.iter().map(ratio).collect();
+    ratios.is_some_and(|all| all.iter().sum::<f64>() < all.len() as f64)
 }
 
 impl Second {
@@ -42,14 +43,18 @@ impl Second {
 
     /// Logarithm of the density of the outputs by the true model less that by a simulation of the nominal
     /// one, nats.
-    pub(super) fn true_gain(&self, later: &Comparison) -> f64 {
+    pub(super) fn true_gain(&self, later: &Validation) -> f64 {
         let outputs = self.sigmas.len();
         let gain = |(output, sigma): (usize, &f64)| {
             let own = (output..self.quiet.len()).step_by(outputs);
             let differences = own.map(|place| self.record.outputs[place] - self.quiet[place]);
             let seen: Vec<f64> = differences.filter(|value| !value.is_nan()).collect();
             let noise: f64 = seen.iter().map(|value| value * value).sum();
-            let nominal = seen.len() as f64 * later.errors[output].nominal.powi(2);
+            let nominal = seen.len() as f64
+                * later.open_loop[output]
+                    .nominal
+                    .unwrap_or(f64::INFINITY)
+                    .powi(2);
             0.5 * (nominal - noise) / (sigma * sigma)
         };
         self.sigmas.iter().enumerate().map(gain).sum()

@@ -21,7 +21,7 @@ const ZERO: f64 = 2e-15;
 const VECTOR: usize = 32;
 
 /// Keys whose standard deviation is the key `sigma` beside them.
-const OF_SIGMA: [&str; 5] = ["estimate", "nominal", "shift", "sigma", "value"];
+const OF_SIGMA: [&str; 3] = ["estimate", "shift", "sigma"];
 
 /// Keys that tell the elements of an array apart. The order of such elements is that of numbers in them, which
 /// are compared.

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use gyrocal::effect::{EffectKind, Enters, NoiseProperty};
 use gyrocal::{EFFECTS, Effect};
-use gyrocal_diagnosis::result::FindingKind;
+use gyrocal_answer::FindingKind;
 use gyrocal_diagnosis::{
     AuditOptions, DiagnoseOptions, NoiseAudit, Outlier, audit_noise, diagnose,
 };

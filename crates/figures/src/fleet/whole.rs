@@ -1,6 +1,6 @@
 //! A fleet of records from end to end: simulated, diagnosed, its scores sent as bytes, and looked at.
 
-use gyrocal_diagnosis::result::read_text;
+use gyrocal_answer::read_text;
 use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
 use gyrocal_evaluation::inject;
 use gyrocal_fleet::{FleetOptions, FleetRecord, RecordName, summarise, to_bytes};

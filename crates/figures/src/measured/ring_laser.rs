@@ -2,8 +2,9 @@
 
 use std::time::Instant;
 
+use gyrocal_answer::Verdict;
 use gyrocal_calibration::{Calibration, GyroAxes, Options, Run, calibrate, calibrate_strapdown};
-use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, Verdict, diagnose};
+use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, diagnose};
 use gyrocal_instruments::strapdown::{ImportReport, ImportSettings, Imported, import};
 use gyrocal_instruments::{Description, Log};
 

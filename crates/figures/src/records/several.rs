@@ -2,10 +2,8 @@
 
 use gyrocal::Effect;
 use gyrocal::effect::{EffectKind, Enters};
-use gyrocal_diagnosis::result::Finding;
-use gyrocal_diagnosis::{
-    DiagnoseOptions, Gate, RecordToDiagnose, Verdict, diagnose, diagnose_together,
-};
+use gyrocal_answer::{Finding, Verdict};
+use gyrocal_diagnosis::{DiagnoseOptions, Gate, RecordToDiagnose, diagnose, diagnose_together};
 use gyrocal_evaluation::{InjectedEffect, effect_of, run_of, set_holds, testable_effects};
 use gyrocal_setup::PlatformKind;
 use gyrocal_statistics::deviates::Draw;

@@ -2,7 +2,7 @@
 
 use gyrocal::Effect;
 use gyrocal::effect::EffectKind;
-use gyrocal_diagnosis::result::{DiagnosisResult, Finding};
+use gyrocal_answer::{Answer, Finding};
 use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, diagnose};
 use gyrocal_evaluation::effect_of;
 use gyrocal_record::AXES;
@@ -36,7 +36,7 @@ pub(super) fn may_walk(finding: &Finding, gyro: Option<usize>) -> bool {
 
 /// Causes without a random walk of their own gyro in the set; those that enter no gyro count without any walk in
 /// the set.
-pub(super) fn surely_not_walks(found: &DiagnosisResult) -> impl Iterator<Item = &Finding> {
+pub(super) fn surely_not_walks(found: &Answer) -> impl Iterator<Item = &Finding> {
     let own = |cause: &Finding| effect_of(&cause.effect).and_then(Effect::rate);
     found
         .causes()
@@ -60,7 +60,7 @@ pub(super) struct Stated {
 }
 
 /// The nine coefficients, gyro by gyro; none without a fit.
-pub(super) fn coefficients(found: &DiagnosisResult, simulation: &Simulation) -> Vec<Stated> {
+pub(super) fn coefficients(found: &Answer, simulation: &Simulation) -> Vec<Stated> {
     let Some(of) = &found.coefficients else {
         return Vec::new();
     };

@@ -1,7 +1,7 @@
 //! Noise other than declared: random walks and flicker of the gyros, misdeclared, correlated and
 //! heavy-tailed noise. No deterministic cause is in these records.
 
-use gyrocal_diagnosis::DiagnosisResult;
+use gyrocal_answer::Answer;
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::faults::noise::{flickering, student, with_noise};
 use gyrocal_truth::{Hidden, simulate};
@@ -152,7 +152,7 @@ fn record(noise: Noise, seed: u64) -> Result<Noisy, Error> {
 }
 
 /// Whether the interval of a walk holds its size; `None` unless it is named.
-fn holds_size(found: &DiagnosisResult, walk: &Hidden) -> Option<bool> {
+fn holds_size(found: &Answer, walk: &Hidden) -> Option<bool> {
     let finding = found.causes().find(|cause| cause.effect == walk.id())?;
     let pieces = finding.parameter("size")?.interval.as_ref()?;
     let (_, size, _) = *walk.parameters().first()?;

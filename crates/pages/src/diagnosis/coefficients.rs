@@ -1,9 +1,8 @@
 //! The drift coefficients: nominal and extended, against record length, and against the site.
 
 use gyrocal::generated::platform::DRIFT;
+use gyrocal_answer::{Answer, CoefficientEstimate};
 use gyrocal_calibration::{Estimates as Fitted, FittedPlatform, SiteBias, SiteQuantity};
-use gyrocal_diagnosis::DiagnosisResult;
-use gyrocal_diagnosis::result::CoefficientEstimate;
 use gyrocal_record::Record;
 use gyrocal_report::page::{
     Band, Cell, Chart, Column, EstimateRow, Estimates, Item, Panel, Section, Table, TimeAxis, Tint,
@@ -21,7 +20,7 @@ const POINTS: usize = 240;
 /// Part of the record after which estimates set the scale of a panel.
 const SETTLED: f64 = 0.3;
 
-pub(super) fn section(result: &DiagnosisResult, convergence: Option<Chart>) -> Option<Section> {
+pub(super) fn section(result: &Answer, convergence: Option<Chart>) -> Option<Section> {
     let all = result.coefficients.as_ref()?;
     let models = [Some(&all.nominal), all.extended.as_ref()];
     let models: Vec<_> = models.into_iter().flatten().collect();

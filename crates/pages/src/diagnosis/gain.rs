@@ -1,7 +1,7 @@
 //! Gain of the extended model.
 
-use gyrocal_diagnosis::result::{Gain, Prediction};
-use gyrocal_diagnosis::{DiagnosisResult, LaterPrediction};
+use gyrocal_answer::{Answer, Gain, Prediction};
+use gyrocal_diagnosis::LaterPrediction;
 use gyrocal_report::page::{
     Cell, Chart, Column, Item, Line, LineKind, Panel, Section, Table, TimeAxis, Tint,
 };
@@ -12,10 +12,7 @@ use crate::panels::line;
 use crate::words::{listed, micro_g};
 
 /// `None` without a cause.
-pub(super) fn section(
-    result: &DiagnosisResult,
-    later: Option<&LaterPrediction>,
-) -> Option<Section> {
+pub(super) fn section(result: &Answer, later: Option<&LaterPrediction>) -> Option<Section> {
     let gain = result.gain.as_ref()?;
     let mut items = vec![Item::Chart(blocks(gain))];
     items.extend(later.map(|later| Item::Chart(drift(later))));
@@ -31,12 +28,10 @@ pub(super) fn section(
 
 fn blocks(gain: &Gain) -> Chart {
     let nats = &gain.block_log_score_nats;
-    let better = nats.iter().filter(|nats| **nats > 0.0).count();
+    let better = nats.iter().flatten().filter(|nats| **nats > 0.0).count();
     let part = |sign: f64| -> Vec<f64> {
-        let kept = nats
-            .iter()
-            .map(|nats| if nats * sign > 0.0 { *nats } else { f64::NAN });
-        kept.collect()
+        let kept = |nats: &Option<f64>| nats.filter(|nats| nats * sign > 0.0).unwrap_or(f64::NAN);
+        nats.iter().map(kept).collect()
     };
     let bars = |label: &str, tint, values| Line {
         label: label.to_owned(),
@@ -139,15 +134,18 @@ fn column(head: &str, is_number: bool) -> Column {
 }
 
 fn figures(gain: &Gain) -> Table {
-    let rms = gain.free_run_rms_g;
-    let mut rows = vec![vec![
-        "open-loop error, rms".to_owned(),
-        micro_g(rms.before),
-        micro_g(rms.after),
-        format!("{} (accelerometer noise)", micro_g(rms.noise)),
-    ]];
-    if let Some(later) = &gain.validation {
-        let error = &later.compensation;
+    let mut rows = Vec::new();
+    rows.extend(gain.free_run_rms_g.map(|rms| {
+        vec![
+            "open-loop error, rms".to_owned(),
+            micro_g(rms.before),
+            micro_g(rms.after),
+            format!("{} (accelerometer noise)", micro_g(rms.noise)),
+        ]
+    }));
+    if let Some(later) = &gain.validation
+        && let Some(error) = &later.compensation
+    {
         rows.push(vec![
             format!(
                 "attitude error in the later record after {:.1} h",

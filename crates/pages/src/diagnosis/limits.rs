@@ -1,7 +1,7 @@
 //! What a diagnosis cannot tell, and the next run.
 
-use gyrocal_diagnosis::result::Relation;
-use gyrocal_diagnosis::{DiagnosisResult, Verdict, prose};
+use gyrocal_answer::{Answer, Verdict};
+use gyrocal_diagnosis::prose;
 use gyrocal_report::page::{Card, Cell, Column, Item, List, Section, Table};
 use gyrocal_statistics::format;
 
@@ -9,18 +9,15 @@ use super::section;
 use super::summary::first_of;
 use crate::words::listed;
 
-pub(super) fn cannot_tell(result: &DiagnosisResult) -> Section {
-    let mut items = Vec::new();
-    let groups = result.cannot_tell.iter().map(|group| {
+pub(super) fn cannot_tell(result: &Answer) -> Section {
+    let groups = prose::groups(result).into_iter();
+    let groups = groups.map(|[members, why, words]| {
         Item::List(List {
-            title: group.members.join(", "),
-            entries: vec![
-                format!("Why: {}.", group.why),
-                format!("Experiment: {}.", group.would_separate),
-            ],
+            title: members,
+            entries: vec![format!("Why: {why}."), format!("Experiment: {words}.")],
         })
     });
-    items.extend(groups);
+    let mut items: Vec<Item> = groups.collect();
     if items.is_empty() {
         items.push(Item::Text(
             "No reported effect has an alternative in the catalogue.".to_owned(),
@@ -37,7 +34,7 @@ pub(super) fn cannot_tell(result: &DiagnosisResult) -> Section {
 }
 
 /// Effects that were not tested or would not be detected.
-fn undetected(result: &DiagnosisResult) -> Option<Table> {
+fn undetected(result: &Answer) -> Option<Table> {
     let word = |head: &str| Column {
         head: head.to_owned(),
         is_number: false,
@@ -76,7 +73,7 @@ fn undetected(result: &DiagnosisResult) -> Option<Table> {
 }
 
 /// The command that plans the next run.
-fn plan_command(result: &DiagnosisResult) -> String {
+fn plan_command(result: &Answer) -> String {
     format!("gyrocal plan {}", prose::files(result))
 }
 
@@ -84,25 +81,27 @@ fn plan_command(result: &DiagnosisResult) -> String {
 const FOR_SMALLER_SIGMAS: &str = "The command finds the run that reduces the sigmas most.";
 
 /// What to do next, in a sentence.
-fn advice(result: &DiagnosisResult) -> String {
-    let experiment = result
-        .cannot_tell
-        .iter()
-        .find(|group| group.relation != Relation::SetUps)
-        .map(|group| &group.would_separate);
+fn advice(result: &Answer) -> String {
+    let findings = result.findings.iter();
+    let experiment = findings.flat_map(|one| &one.separations).next();
     match (result.verdict, experiment) {
         (Verdict::Setup, _) => "Mend the set-up, and diagnose the record again.".to_owned(),
         (Verdict::Unexplained, _) => {
             "Look at the residuals below, and record again under other conditions.".to_owned()
         }
-        (_, Some(experiment)) => format!("To tell what remains apart: {experiment}."),
+        (Verdict::NotSettled, None) => {
+            "Look at the residuals below, mend the largest fault, and record again.".to_owned()
+        }
+        (_, Some(experiment)) => format!("To tell what remains apart: {}.", experiment.words),
         (Verdict::Clean, None) if result.hides_most() => "Record for a day or longer.".to_owned(),
         (Verdict::Clean, None) => format!("Use the coefficients. {FOR_SMALLER_SIGMAS}"),
-        (_, None) => format!("The cause is unique. {FOR_SMALLER_SIGMAS}"),
+        (Verdict::EffectsFound, None) => {
+            format!("No alternative of the catalogue is left. {FOR_SMALLER_SIGMAS}")
+        }
     }
 }
 
-pub(super) fn next_card(result: &DiagnosisResult) -> Card {
+pub(super) fn next_card(result: &Answer) -> Card {
     Card {
         title: "Next step".to_owned(),
         text: vec![first_of(&advice(result))],
@@ -112,7 +111,7 @@ pub(super) fn next_card(result: &DiagnosisResult) -> Card {
     }
 }
 
-pub(super) fn next_run(result: &DiagnosisResult) -> Section {
+pub(super) fn next_run(result: &Answer) -> Section {
     let mut items = vec![
         Item::Text(advice(result)),
         Item::Command(plan_command(result)),
@@ -140,7 +139,7 @@ pub(super) fn next_run(result: &DiagnosisResult) -> Section {
     section(
         "next",
         "Next run",
-        if result.strapdown {
+        if result.is_strapdown() {
             "The log that tells most, of the unit at rest in another attitude."
         } else {
             "The run that tells most, within the limits of the gimbals."

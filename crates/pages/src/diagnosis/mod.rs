@@ -8,8 +8,8 @@ pub(crate) mod ranking;
 mod residuals;
 mod summary;
 
-use gyrocal_diagnosis::result::FindingKind;
-use gyrocal_diagnosis::{Diagnosis, DiagnosisResult, Verdict, prose};
+use gyrocal_answer::{Answer, FindingKind, Verdict};
+use gyrocal_diagnosis::{Diagnosis, prose};
 use gyrocal_record::Bench;
 use gyrocal_report::page::{Item, Part, Section};
 
@@ -33,7 +33,7 @@ pub fn of_diagnosis(diagnosis: &Diagnosis<'_>, bench: &Bench) -> Result<Part, Pa
         effects: accepted(result),
     };
     let mut sections: Vec<Section> = open_loop::sections(&simulated)?.into();
-    sections.extend(ranking::section(Ranked::of_result(result).as_ref()));
+    sections.extend(ranking::section(Ranked::of(result).as_ref()));
     let fits = (&diagnosis.nominal, diagnosis.extended.as_ref());
     let convergence = coefficients::convergence(&diagnosis.record, fits)?;
     sections.extend(coefficients::section(result, convergence));
@@ -47,12 +47,11 @@ pub fn of_diagnosis(diagnosis: &Diagnosis<'_>, bench: &Bench) -> Result<Part, Pa
     Ok(part(result, sections))
 }
 
-/// The page of a written result: all but the charts over time, for which the record is needed.
-#[must_use]
-pub fn of_result(result: &DiagnosisResult) -> Part {
+/// The page of a written answer on a platform: all but the charts over time, for which the record is needed.
+pub(crate) fn of_platform(result: &Answer) -> Part {
     let mut sections = Vec::new();
     if result.verdict != Verdict::Setup {
-        sections.extend(ranking::section(Ranked::of_result(result).as_ref()));
+        sections.extend(ranking::section(Ranked::of(result).as_ref()));
         sections.extend(coefficients::section(result, None));
         sections.push(limits::cannot_tell(result));
         sections.push(residuals::section(result, Vec::new()));
@@ -63,7 +62,7 @@ pub fn of_result(result: &DiagnosisResult) -> Part {
     part(result, sections)
 }
 
-fn part(result: &DiagnosisResult, sections: Vec<Section>) -> Part {
+fn part(result: &Answer, sections: Vec<Section>) -> Part {
     Part {
         name: match result.records.len() {
             0 => file_name(&result.manifest, 0, "record"),
@@ -81,7 +80,7 @@ fn part(result: &DiagnosisResult, sections: Vec<Section>) -> Part {
 }
 
 /// The whole answer as the command prints it.
-fn in_words(result: &DiagnosisResult) -> Section {
+fn in_words(result: &Answer) -> Section {
     Section {
         id: "words".to_owned(),
         title: "In words".to_owned(),
@@ -91,14 +90,14 @@ fn in_words(result: &DiagnosisResult) -> Section {
 }
 
 /// Effects in the extended model.
-fn accepted(result: &DiagnosisResult) -> Vec<&str> {
+fn accepted(result: &Answer) -> Vec<&str> {
     let causes = result.causes();
     let accepted = causes.filter(|cause| cause.accepted == Some(true));
     accepted.map(|cause| &*cause.effect).collect()
 }
 
 /// All effects found, those of a filter aside: the page is about the record.
-fn found(result: &DiagnosisResult) -> Vec<&gyrocal_diagnosis::result::Finding> {
+fn found(result: &Answer) -> Vec<&gyrocal_answer::Finding> {
     let findings = result.findings.iter();
     findings
         .filter(|finding| finding.kind != FindingKind::Filter)

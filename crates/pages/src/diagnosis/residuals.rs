@@ -1,9 +1,7 @@
 //! Tests of the innovations: correlation over rows, and spectrum.
 
-use gyrocal_diagnosis::result::{ResidualTest, Residuals};
-use gyrocal_diagnosis::{
-    ChannelCorrelation, ChannelSpectrum, Diagnosis, DiagnosisResult, ModelVersion,
-};
+use gyrocal_answer::{Answer, ResidualTest, Residuals};
+use gyrocal_diagnosis::{ChannelCorrelation, ChannelSpectrum, Diagnosis, ModelVersion};
 use gyrocal_record::AXES;
 use gyrocal_report::page::{Cell, Chart, Column, Item, Level, Mark, Panel, Section, Table, Tint};
 use gyrocal_statistics::format::{self, p_cell};
@@ -19,7 +17,7 @@ const SECONDS_PER_DAY: f64 = 86_400.0;
 /// Name of the test of correlation.
 const LJUNG_BOX: &str = "correlation over rows (Ljung-Box)";
 
-pub(super) fn section(result: &DiagnosisResult, charts: Vec<Chart>) -> Section {
+pub(super) fn section(result: &Answer, charts: Vec<Chart>) -> Section {
     let mut items = vec![Item::Table(tests(result))];
     items.extend(charts.into_iter().map(Item::Chart));
     titled(
@@ -177,7 +175,7 @@ fn spectrum(spectra: Vec<ChannelSpectrum>, probability: f64) -> Chart {
 type Test = (&'static str, String, String, f64);
 
 /// The tests in a table.
-fn tests(result: &DiagnosisResult) -> Table {
+fn tests(result: &Answer) -> Table {
     let mut all = Vec::new();
     if let Some(residuals) = &result.residuals {
         all.extend(of_nominal(residuals));
@@ -258,10 +256,8 @@ fn of_remainder(remainder: &ResidualTest) -> Vec<Test> {
         let found = ljung_box(all.ljung_box, all.degrees_of_freedom);
         add(LJUNG_BOX, found, all.p_value);
     }
-    add(
-        "all residual tests together",
-        String::new(),
-        remainder.p_value,
-    );
+    if let Some(p) = remainder.p_value {
+        add("all residual tests together", String::new(), p);
+    }
     tests
 }

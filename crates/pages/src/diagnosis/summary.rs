@@ -1,7 +1,7 @@
 //! The first screen of a diagnosis.
 
-use gyrocal_diagnosis::result::{CoefficientShift, Coefficients, Finding, Gain, Parameter};
-use gyrocal_diagnosis::{DiagnosisResult, Verdict, prose};
+use gyrocal_answer::{Answer, CoefficientShift, Coefficients, Finding, Gain, Parameter, Verdict};
+use gyrocal_diagnosis::prose;
 use gyrocal_report::page::{Card, Cell, Column, Summary, Table, Tone};
 use gyrocal_statistics::format;
 
@@ -15,7 +15,7 @@ const NOTABLE: f64 = 2.0;
 /// Letters of proposals that a card of the first screen has room for.
 const ROOM: usize = 300;
 
-pub(super) fn summary(result: &DiagnosisResult) -> Summary {
+pub(super) fn summary(result: &Answer) -> Summary {
     // The first paragraph is on the record.
     let sentence = match prose::diagnosis(result).into_iter().nth(1) {
         Some(prose::Block::Paragraph(words)) => words,
@@ -45,13 +45,17 @@ pub(super) fn summary(result: &DiagnosisResult) -> Summary {
     }
 }
 
-fn verdict(result: &DiagnosisResult) -> (Tone, String) {
+fn verdict(result: &Answer) -> (Tone, String) {
     match result.verdict {
         Verdict::Clean if result.hides_most() => (
             Tone::Found,
             "Too short to tell: most faults would not show".to_owned(),
         ),
         Verdict::Clean => (Tone::Good, "No model mismatch detected".to_owned()),
+        Verdict::NotSettled => (
+            Tone::Bad,
+            format!("Not settled: {}", prose::not_settled(result)),
+        ),
         Verdict::EffectsFound => {
             let effects: Vec<&str> = found(result).iter().map(|one| &*one.effect).collect();
             let headline = match &*effects {
@@ -62,14 +66,14 @@ fn verdict(result: &DiagnosisResult) -> (Tone, String) {
             (Tone::Found, headline)
         }
         Verdict::Setup => (Tone::Bad, "Wrong set-up: not diagnosed".to_owned()),
-        _ => (
+        Verdict::Unexplained => (
             Tone::Bad,
             "Unexplained: the model does not fit the record".to_owned(),
         ),
     }
 }
 
-fn setup(result: &DiagnosisResult) -> Card {
+fn setup(result: &Answer) -> Card {
     Card {
         title: "What is wrong with the set-up".to_owned(),
         text: result.setup.iter().map(|problem| problem.text()).collect(),
@@ -78,19 +82,18 @@ fn setup(result: &DiagnosisResult) -> Card {
     }
 }
 
-fn cause(result: &DiagnosisResult) -> Card {
+fn cause(result: &Answer) -> Card {
     let found = found(result);
     let columns = 5;
     let Some(first) = found.first() else {
         return nothing(result, columns);
     };
     let size = first.parameters.first();
-    let mut text = vec![format!(
-        "{:.1} sigma, {} after correction for the search{}",
-        first.z,
-        format::p_value(first.p_value),
-        further(first)
-    )];
+    let p = match first.p_value {
+        Some(p) => format!("{} after correction for the search", format::p_value(p)),
+        None => prose::NO_P.to_owned(),
+    };
+    let mut text = vec![format!("{:.1} sigma, {p}{}", first.z, further(first))];
     if let [_, others @ ..] = &*found
         && !others.is_empty()
     {
@@ -134,7 +137,7 @@ fn value(parameter: &Parameter) -> String {
 }
 
 /// The first tile without a named cause.
-fn nothing(result: &DiagnosisResult, columns: usize) -> Card {
+fn nothing(result: &Answer, columns: usize) -> Card {
     let tested = prose::counted(result.ranking.len(), "effect");
     let strongest = result
         .ranking
@@ -168,7 +171,7 @@ fn nothing(result: &DiagnosisResult, columns: usize) -> Card {
     }
 }
 
-fn alternatives(result: &DiagnosisResult) -> Card {
+fn alternatives(result: &Answer) -> Card {
     let mut text = Vec::new();
     let mut main = String::new();
     let mut title = "What else it might be";
@@ -194,30 +197,28 @@ fn alternatives(result: &DiagnosisResult) -> Card {
             let others: Vec<String> = others
                 .map(|other| format!("{}: {}", other.effect, prose::likelihood(other)))
                 .collect();
-            let equal = first.equivalents.iter();
-            text.extend(equal.map(|equal| format!("{}: exact equivalent", equal.effect)));
             let more = first.alternatives.len().saturating_sub(ALTERNATIVES);
             text.extend(others);
             if more > 0 {
                 text.push(format!("and {more} more"));
             }
-            text.extend(first.none_of_these.map(|none| {
-                format!(
-                    "Outside of the catalogue: probability {} %",
-                    format::short(100.0 * none, 2)
-                )
-            }));
-            if first.alternatives.is_empty() && first.equivalents.is_empty() {
-                let sure = first.coverage.map_or_else(String::new, |coverage| {
-                    format!(" at {}", format::percent(coverage))
-                });
+            let probability = match first.none_of_these {
+                Some(none) => format!("{} %", format::short(100.0 * none, 2)),
+                None => "not estimated".to_owned(),
+            };
+            text.push(format!(
+                "Outside of the catalogue: probability {probability}"
+            ));
+            if first.alternatives.is_empty() {
                 main = prose::may_also_be(result);
-                text.insert(
-                    0,
-                    format!("All alternatives that were tested are excluded{sure}."),
-                );
+                if result.search_complete {
+                    let sure = first.coverage.map_or_else(String::new, |coverage| {
+                        format!(" at {}", format::percent(coverage))
+                    });
+                    let excluded = format!("All alternatives that were tested are excluded{sure}.");
+                    text.insert(0, excluded);
+                }
             }
-            text.extend(near_twins(result, first));
         }
     }
     Card {
@@ -229,17 +230,7 @@ fn alternatives(result: &DiagnosisResult) -> Card {
     }
 }
 
-/// Untested effects that look like the first finding.
-fn near_twins(result: &DiagnosisResult, first: &Finding) -> Option<String> {
-    use gyrocal_diagnosis::result::Relation;
-    let twins = result.cannot_tell.iter().find(|group| {
-        group.relation == Relation::NearTwins && group.members.first() == Some(&first.effect)
-    })?;
-    let others: Vec<&str> = twins.members.iter().skip(1).map(String::as_str).collect();
-    Some(format!("Looks like: {} (not tested).", listed(&others)))
-}
-
-fn gain(result: &DiagnosisResult) -> Card {
+fn gain(result: &Answer) -> Card {
     let mut card = Card {
         title: "Gain".to_owned(),
         columns: 3,
@@ -261,34 +252,34 @@ fn gain(result: &DiagnosisResult) -> Card {
 }
 
 fn with_gain(card: &mut Card, gain: &Gain) {
-    let rms = gain.free_run_rms_g;
-    card.main = format!(
-        "{} → {}",
-        micro_g(rms.before).trim_end_matches(" µg"),
-        micro_g(rms.after)
-    );
-    card.number = "open-loop error".to_owned();
-    let better = gain.block_log_score_nats.iter().filter(|nats| **nats > 0.0);
-    card.text = vec![
-        format!("accelerometer noise {}", micro_g(rms.noise)),
-        format!(
-            "{:+.1} nats in cross-validation, better in {} of {} blocks",
-            gain.cross_validated_log_score_nats,
-            better.count(),
-            gain.block_log_score_nats.len()
-        ),
-    ];
-    card.text.extend(gain.validation.as_ref().map(|later| {
+    if let Some(rms) = gain.free_run_rms_g {
+        card.main = format!(
+            "{} → {}",
+            micro_g(rms.before).trim_end_matches(" µg"),
+            micro_g(rms.after)
+        );
+        card.number = "open-loop error".to_owned();
+        card.text = vec![format!("accelerometer noise {}", micro_g(rms.noise))];
+    }
+    let blocks = gain.block_log_score_nats.iter().flatten();
+    let better = blocks.filter(|nats| **nats > 0.0);
+    card.text.push(format!(
+        "{:+.1} nats in cross-validation, better in {} of {} blocks",
+        gain.cross_validated_log_score_nats,
+        better.count(),
+        gain.block_log_score_nats.len()
+    ));
+    let later = gain.validation.as_ref();
+    let error = later.and_then(|later| later.compensation.as_ref());
+    card.text.extend(error.map(|error| {
         format!(
             "later record: {:.2} → {:.2} arcmin after {:.0} h",
-            later.compensation.nominal_arcmin,
-            later.compensation.extended_arcmin,
-            later.compensation.after_h
+            error.nominal_arcmin, error.extended_arcmin, error.after_h
         )
     }));
 }
 
-fn coefficients(result: &DiagnosisResult, all: &Coefficients) -> Card {
+fn coefficients(result: &Answer, all: &Coefficients) -> Card {
     let number = |head: &str| Column {
         head: head.to_owned(),
         is_number: true,

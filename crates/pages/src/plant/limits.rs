@@ -1,12 +1,12 @@
 //! What a record of a plant cannot tell.
 
-use gyrocal_plant::answer::Diagnosis;
+use gyrocal_answer::Answer;
+use gyrocal_plant::sentences;
 use gyrocal_report::page::{Cell, Column, Item, List, Section, Table};
 
 use crate::diagnosis::section;
-use crate::words::capitalised;
 
-pub(super) fn cannot_tell(answer: &Diagnosis) -> Section {
+pub(super) fn cannot_tell(answer: &Answer) -> Section {
     let mut items = Vec::new();
     let list = |title: &str, entries: Vec<String>| {
         (!entries.is_empty()).then(|| {
@@ -19,8 +19,7 @@ pub(super) fn cannot_tell(answer: &Diagnosis) -> Section {
     let directions = |is_gauge: bool| -> Vec<String> {
         let all = answer.undetermined.iter();
         let own = all.filter(|one| one.is_gauge == is_gauge);
-        own.map(|one| format!("{}.", capitalised(&one.sentence())))
-            .collect()
+        own.map(sentences::direction).collect()
     };
     items.extend(list(
         "Gauges: no record of this plant shows them",
@@ -34,12 +33,12 @@ pub(super) fn cannot_tell(answer: &Diagnosis) -> Section {
             .map(|input| format!("{input}: nothing that depends on it can be told from a constant"))
             .collect(),
     ));
-    if !answer.left_out.is_empty() {
+    if !answer.not_searched.is_empty() {
         let column = |head: &str| Column {
             head: head.to_owned(),
             is_number: false,
         };
-        let rows = answer.left_out.iter();
+        let rows = answer.not_searched.iter();
         items.push(Item::Table(Table {
             title: "Effects that were not tested".to_owned(),
             columns: vec![column("effect"), column("reason")],

@@ -6,16 +6,16 @@ mod pictures;
 mod summary;
 mod tables;
 
+use gyrocal_answer::Answer;
 use gyrocal_diagnosis::prose::counted;
-use gyrocal_plant::Diagnosed;
-use gyrocal_plant::answer::Diagnosis;
+use gyrocal_plant::{Diagnosed, sentences};
 use gyrocal_record::Manifest;
-use gyrocal_report::page::{Item, List, Part};
+use gyrocal_report::page::{Item, List, Part, Section};
 use gyrocal_statistics::format;
 
 use crate::diagnosis::{ranking, section};
 use crate::error::PageError;
-use crate::origin::origin;
+use crate::origin::{file_name, origin};
 use crate::ranked::Ranked;
 
 pub use pictures::{NamedPicture, plant_pictures};
@@ -28,47 +28,70 @@ pub fn of_plant(diagnosed: &Diagnosed, name: &str, manifest: &Manifest) -> Resul
     let answer = &diagnosed.answer;
     let mut sections: Vec<_> = over_time::sections(diagnosed).into();
     sections.extend(tables::sets(answer));
-    sections.extend(ranking::section(Ranked::of_plant(answer).as_ref()));
-    sections.push(tables::parameters(answer));
+    sections.extend(ranking::section(Ranked::of(answer).as_ref()));
+    sections.extend(tables::parameters(answer));
     sections.extend(tables::records(answer));
     sections.extend(tables::gain(diagnosed));
     sections.push(over_time::innovations(diagnosed)?);
     sections.push(limits::cannot_tell(answer));
+    Ok(part(answer, name, manifest, sections))
+}
+
+/// The page of a written answer on a plant: all but the charts, for which the record is needed.
+pub(crate) fn of_answer(answer: &Answer) -> Part {
+    let mut sections: Vec<Section> = tables::sets(answer).into_iter().collect();
+    sections.extend(ranking::section(Ranked::of(answer).as_ref()));
+    sections.extend(tables::parameters(answer));
+    sections.extend(tables::records(answer));
+    sections.push(limits::cannot_tell(answer));
+    let name = match answer.records.len() {
+        0 => file_name(&answer.manifest, 0, "record"),
+        several => counted(several, "record"),
+    };
+    part(answer, &name, &answer.manifest, sections)
+}
+
+fn part(answer: &Answer, name: &str, manifest: &Manifest, mut sections: Vec<Section>) -> Part {
     sections.push(section(
         "words",
         "In words",
         "The answer as the command prints it.",
         vec![Item::List(List {
             title: String::new(),
-            entries: answer.sentences(),
+            entries: sentences::all(answer),
         })],
     ));
-    Ok(Part {
+    Part {
         name: name.to_owned(),
         size: size(answer),
         summary: summary::summary(answer),
         sections,
         origin: origin(manifest),
-    })
+    }
 }
 
 /// Rows and duration.
-fn size(answer: &Diagnosis) -> String {
+fn size(answer: &Answer) -> String {
     let of_records = match answer.records.len() {
         0 => String::new(),
         count => format!(" of {}", counted(count, "record")),
     };
     format!(
         "{}{of_records} over {} s",
-        counted(answer.rows, "row"),
-        format::short(answer.duration_s, 4)
+        counted(answer.record.rows, "row"),
+        format::short(answer.record.duration_s, 4)
     )
 }
 
 /// The name of each record of an answer; empty of one that is alone.
-fn record_names(answer: &Diagnosis) -> Vec<&str> {
+fn record_names(answer: &Answer) -> Vec<&str> {
     let names: Vec<&str> = answer.records.iter().map(|one| one.name.as_str()).collect();
     if names.is_empty() { vec![""] } else { names }
+}
+
+/// An error of a simulation with its unit; that of one that leaves the finite numbers is infinite.
+fn rms(error: Option<f64>, unit: &str) -> String {
+    error.map_or_else(|| "∞".to_owned(), |rms| with_unit(rms, unit))
 }
 
 /// A number with its unit; `1` is no unit.

@@ -1,12 +1,12 @@
 //! Outputs over time, and tests of the innovations.
 
-use gyrocal_plant::answer::Diagnosis;
+use gyrocal_answer::{Answer, OutputError};
 use gyrocal_plant::{Diagnosed, OutputCorrelation, OutputSeries, RecordSeries};
 use gyrocal_report::page::{Cell, Chart, Column, Item, Panel, Section, Table, TimeAxis};
 use gyrocal_statistics::format::{self, p_cell};
 use gyrocal_statistics::{NORMAL_97_5, rms_of_present};
 
-use super::{record_names, with_unit};
+use super::{record_names, rms, with_unit};
 use crate::diagnosis::section;
 use crate::error::PageError;
 use crate::panels;
@@ -36,7 +36,7 @@ pub(super) fn sections(diagnosed: &Diagnosed) -> [Section; 2] {
     } else {
         format!(
             "The plant simulated over {} s at a time, as its rates have noise, and what its sensors measured.",
-            format::short(answer.horizon_s, 4)
+            format::short(answer.horizon_s.unwrap_or_default(), 4)
         )
     };
     let residual_lead = if whole {
@@ -61,19 +61,19 @@ pub(super) fn sections(diagnosed: &Diagnosed) -> [Section; 2] {
 }
 
 /// Errors of all outputs in a title.
-fn errors(answer: &Diagnosis) -> String {
-    let of = |error: &gyrocal_plant::answer::OutputError| {
-        let nominal = with_unit(error.nominal, &error.unit);
+fn errors(answer: &Answer) -> String {
+    let of = |error: &OutputError| {
+        let nominal = rms(error.nominal, &error.unit);
         match answer.has_findings() {
             true => format!(
                 "{}: {nominal} rms for the nominal model, {} with what was found",
                 error.output,
-                with_unit(error.extended, &error.unit)
+                rms(error.extended, &error.unit)
             ),
             false => format!("{}: {nominal} rms", error.output),
         }
     };
-    let all: Vec<String> = answer.errors.iter().map(of).collect();
+    let all: Vec<String> = answer.open_loop.iter().map(of).collect();
     all.join("; ")
 }
 
@@ -216,17 +216,17 @@ fn correlations(found: &[OutputCorrelation]) -> Chart {
 }
 
 /// Whiteness of what is left, and noise.
-fn tests(answer: &Diagnosis) -> Table {
+fn tests(answer: &Answer) -> Table {
     let column = |head: &str, is_number| Column {
         head: head.to_owned(),
         is_number,
     };
     let rows = answer.noise.iter().map(|noise| {
         let [low, high] = noise.interval.map(|end| format::short(end, 3));
-        let mut left = answer.remainder.iter();
-        let left = left.find(|one| one.output == noise.of);
+        let mut left = answer.remainder.outputs.iter();
+        let left = left.find(|one| one.output == noise.channel);
         let cells = [
-            noise.of.clone(),
+            noise.channel.clone(),
             format::short(noise.ratio, 3),
             format!("{low} to {high}"),
             left.map_or_else(String::new, |left| p_cell(left.p_value)),

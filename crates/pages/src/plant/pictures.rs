@@ -1,6 +1,6 @@
 //! Pictures of a diagnosis of a plant.
 
-use gyrocal_plant::answer::Diagnosis;
+use gyrocal_answer::{Answer, Coefficients, Verdict};
 use gyrocal_plant::{Diagnosed, OutputSeries, RecordSeries};
 use gyrocal_report::page::Tint;
 use gyrocal_report::{
@@ -38,15 +38,21 @@ pub fn plant_pictures(diagnosed: &Diagnosed, name: &str) -> Result<Vec<NamedPict
         ),
         ("free-run", Box::new(open_loop(&series, &subtitle))),
     ];
-    if let Some(ranked) = Ranked::of_plant(answer) {
+    if let Some(ranked) = Ranked::of(answer) {
         pictures.push(("ranking", Box::new(ranked.picture(&subtitle))));
     }
     if answer.has_findings() {
-        pictures.push(("parameters", Box::new(parameters(answer, &subtitle))));
+        let compared = answer.coefficients.as_ref();
+        pictures.extend(
+            compared.map(|all| -> NamedPicture {
+                ("parameters", Box::new(parameters(all, &subtitle)))
+            }),
+        );
     }
     if let (Some(later), true) = (&diagnosed.later, answer.has_findings()) {
-        let gain = answer.later_record.as_ref();
-        let nats = gain.map_or(f64::NAN, |gain| gain.gain_nats);
+        let gain = answer.gain.as_ref();
+        let gain = gain.and_then(|gain| gain.validation.as_ref());
+        let nats = gain.map_or(f64::NAN, |gain| gain.log_score_nats);
         let subtitle = format!("later record, {nats:+.1} nats; {subtitle}").replace('-', "−");
         let picture = residuals(answer, later, &subtitle, "residual in the later record");
         pictures.push(("later-record", Box::new(picture)));
@@ -56,16 +62,16 @@ pub fn plant_pictures(diagnosed: &Diagnosed, name: &str) -> Result<Vec<NamedPict
     Ok(pictures)
 }
 
-fn verdict(answer: &Diagnosis) -> String {
-    let effects: Vec<&str> = answer
-        .findings
-        .iter()
-        .map(|one| one.effect.as_str())
-        .collect();
-    match &*effects {
-        [] if answer.unexplained.is_empty() => "no effects found".to_owned(),
-        [] => "unexplained residual".to_owned(),
+fn verdict(answer: &Answer) -> String {
+    let effects: Vec<&str> = answer.findings.iter().map(|one| &*one.effect).collect();
+    let found = match &*effects {
+        [] => "no effects found".to_owned(),
         found => format!("effects found: {}", found.join(", ")),
+    };
+    match answer.verdict {
+        Verdict::Unexplained => "unexplained residual".to_owned(),
+        Verdict::NotSettled => format!("not settled, {found}"),
+        _ => found,
     }
 }
 
@@ -80,12 +86,7 @@ fn shared_unit(series: &RecordSeries) -> Option<String> {
 }
 
 /// Measured less simulated with both models.
-fn residuals(
-    answer: &Diagnosis,
-    series: &RecordSeries,
-    subtitle: &str,
-    quantity: &str,
-) -> Residuals {
+fn residuals(answer: &Answer, series: &RecordSeries, subtitle: &str, quantity: &str) -> Residuals {
     let unit = shared_unit(series);
     let channel = |one: &OutputSeries| {
         let scale = if unit.is_some() {
@@ -151,21 +152,18 @@ fn open_loop(series: &RecordSeries, subtitle: &str) -> OpenLoop {
     }
 }
 
-fn parameters(answer: &Diagnosis, subtitle: &str) -> Comparison {
-    let quantities = answer.parameters.iter().map(|one| ComparedQuantity {
-        name: one.name.clone(),
-        unit: one.unit.clone(),
+fn parameters(all: &Coefficients, subtitle: &str) -> Comparison {
+    let models = all.nominal.iter().zip(all.best());
+    let quantities = models.map(|(nominal, extended)| ComparedQuantity {
+        name: nominal.name.clone(),
+        unit: nominal.unit.clone(),
         reference: None,
-        estimates: vec![
-            ComparedEstimate {
-                value: one.nominal,
-                sigma: one.nominal_sigma,
-            },
-            ComparedEstimate {
-                value: one.value,
+        estimates: [nominal, extended]
+            .map(|one| ComparedEstimate {
+                value: one.estimate,
                 sigma: one.sigma,
-            },
-        ],
+            })
+            .to_vec(),
     });
     Comparison {
         title: "Parameters without and with what was found".to_owned(),

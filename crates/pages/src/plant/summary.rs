@@ -1,11 +1,12 @@
 //! The first screen of a diagnosis of a plant.
 
+use gyrocal_answer::{AlternativeKind, Answer, Finding, OutputError, Verdict};
 use gyrocal_diagnosis::prose::counted;
-use gyrocal_plant::answer::{Diagnosis, Found};
+use gyrocal_plant::sentences;
 use gyrocal_report::page::{Card, Cell, Column, Summary, Table, Tone};
 use gyrocal_statistics::format;
 
-use super::with_unit;
+use super::rms;
 use crate::words::{capitalised, listed};
 
 /// Alternatives named on the first screen.
@@ -14,12 +15,12 @@ const ALTERNATIVES: usize = 3;
 /// Parameters named there.
 const PARAMETERS: usize = 6;
 
-pub(super) fn summary(answer: &Diagnosis) -> Summary {
+pub(super) fn summary(answer: &Answer) -> Summary {
     let (tone, headline) = verdict(answer);
     Summary {
         tone,
         headline,
-        sentence: answer.verdict(),
+        sentence: sentences::verdict(answer),
         cards: vec![
             cause(answer),
             alternatives(answer),
@@ -30,29 +31,32 @@ pub(super) fn summary(answer: &Diagnosis) -> Summary {
     }
 }
 
-fn verdict(answer: &Diagnosis) -> (Tone, String) {
+fn verdict(answer: &Answer) -> (Tone, String) {
     let effects: Vec<&str> = answer
         .findings
         .iter()
         .map(|one| one.effect.as_str())
         .collect();
-    match &*effects {
-        [] if answer.unexplained.is_empty() => {
-            (Tone::Good, "No model mismatch detected".to_owned())
-        }
-        [] => (
+    let lacks = match &*effects {
+        [_, _, _, _, ..] => format!("Model lacks {} effects", effects.len()),
+        few => format!("Model lacks {}", listed(few)),
+    };
+    match answer.verdict {
+        Verdict::Clean => (Tone::Good, "No model mismatch detected".to_owned()),
+        Verdict::Unexplained => (
             Tone::Bad,
             "Unexplained: the catalogue has no term for it".to_owned(),
         ),
-        [_, _, _, _, ..] => (
-            Tone::Found,
-            format!("Model lacks {} effects", effects.len()),
+        Verdict::NotSettled if effects.is_empty() => (
+            Tone::Bad,
+            "Not settled: the search ended at its budget of work".to_owned(),
         ),
-        few => (Tone::Found, format!("Model lacks {}", listed(few))),
+        Verdict::NotSettled => (Tone::Bad, format!("Not settled. {lacks}")),
+        _ => (Tone::Found, lacks),
     }
 }
 
-fn cause(answer: &Diagnosis) -> Card {
+fn cause(answer: &Answer) -> Card {
     let columns = 5;
     let Some(first) = answer.findings.first() else {
         let strongest = answer.ranking.first().map(|first| {
@@ -60,15 +64,18 @@ fn cause(answer: &Diagnosis) -> Card {
                 "The strongest is {}, statistic {:.1}; detection begins at {:.1}.",
                 first.effect,
                 first.statistic.max(0.0),
-                answer.threshold
+                answer.threshold.unwrap_or_default()
             )
         });
-        let unexplained = answer.unexplained.iter().map(|one| one.sentence());
-        let tested = counted(answer.tested, "effect");
+        let unmodelled = answer.remainder.unmodelled.iter();
+        let tested = counted(answer.ranking.len(), "effect");
         return Card {
             title: "Tested".to_owned(),
             main: format!("None of {tested} is significant"),
-            text: unexplained.chain(strongest).collect(),
+            text: unmodelled
+                .map(sentences::unmodelled)
+                .chain(strongest)
+                .collect(),
             columns,
             ..Card::default()
         };
@@ -76,7 +83,7 @@ fn cause(answer: &Diagnosis) -> Card {
     let mut text = vec![format!(
         "{:.1} sigma, {} after correction for the search",
         first.z,
-        format::p_value(first.p_value)
+        sentences::probability(first)
     )];
     if answer.findings.len() > 1 {
         let others = answer.findings[1..].iter();
@@ -96,12 +103,12 @@ fn cause(answer: &Diagnosis) -> Card {
     }
 }
 
-fn size(found: &Found) -> String {
-    let sizes: Vec<String> = found.sizes.iter().map(|size| size.words()).collect();
+fn size(found: &Finding) -> String {
+    let sizes: Vec<String> = found.parameters.iter().map(sentences::parameter).collect();
     format!("{}: {}", found.effect, sizes.join(", "))
 }
 
-fn alternatives(answer: &Diagnosis) -> Card {
+fn alternatives(answer: &Answer) -> Card {
     let mut card = Card {
         title: "What else it might be".to_owned(),
         columns: 4,
@@ -109,23 +116,25 @@ fn alternatives(answer: &Diagnosis) -> Card {
     };
     let Some(first) = answer.findings.first() else {
         "What could go undetected".clone_into(&mut card.title);
-        card.main = match answer.left_out.len() {
+        card.main = match answer.not_searched.len() {
             0 => "Every effect was tested".to_owned(),
             count => counted(count, "effect"),
         };
-        if !answer.left_out.is_empty() {
+        if !answer.not_searched.is_empty() {
             let reason = "Not tested: listed under What cannot be told apart.";
             card.text.push(reason.to_owned());
         }
         return card;
     };
-    let equal = first.equivalents.iter();
+    let equal = first.equivalents();
     card.text
         .extend(equal.map(|id| format!("{id}: exact equivalent")));
-    let others = first.rivals.iter().take(ALTERNATIVES);
-    card.text
-        .extend(others.map(|(id, deficit)| format!("{id}: {deficit:.1} nats less likely")));
-    let more = first.rivals.len().saturating_sub(ALTERNATIVES);
+    let rivals = first.of_kind(AlternativeKind::NotExcluded);
+    let rivals: Vec<String> = rivals
+        .map(|other| format!("{}: {}", other.effect, sentences::likelihood(other)))
+        .collect();
+    let more = rivals.len().saturating_sub(ALTERNATIVES);
+    card.text.extend(rivals.into_iter().take(ALTERNATIVES));
     if more > 0 {
         card.text.push(format!("and {more} more"));
     }
@@ -141,44 +150,45 @@ fn alternatives(answer: &Diagnosis) -> Card {
     card
 }
 
-fn gain(answer: &Diagnosis) -> Card {
+fn gain(answer: &Answer) -> Card {
     let mut card = Card {
         title: "Open-loop error".to_owned(),
         columns: 3,
         ..Card::default()
     };
-    let Some(first) = answer.errors.first() else {
+    let Some(first) = answer.open_loop.first() else {
         return card;
     };
     let has_findings = answer.has_findings();
     if has_findings {
         "Gain".clone_into(&mut card.title);
     }
-    let amount = |error: &gyrocal_plant::answer::OutputError| match has_findings {
+    let amount = |error: &OutputError| match has_findings {
         true => format!(
             "{} → {}",
-            format::short(error.nominal, 3),
-            with_unit(error.extended, &error.unit)
+            rms(error.nominal, "1"),
+            rms(error.extended, &error.unit)
         ),
-        false => with_unit(error.nominal, &error.unit),
+        false => rms(error.nominal, &error.unit),
     };
     card.main = amount(first);
     card.number = format!("open-loop error of {}, rms", first.output);
-    let others = answer.errors[1..].iter();
+    let others = answer.open_loop[1..].iter();
     card.text = others
         .map(|error| format!("{}: {}", error.output, amount(error)))
         .collect();
-    if let (Some(later), true) = (&answer.later_record, has_findings) {
-        let nats = format!("later record: {:+.1} nats", later.gain_nats);
+    let later = answer.gain.as_ref();
+    if let Some(later) = later.and_then(|gain| gain.validation.as_ref()) {
+        let nats = format!("later record: {:+.1} nats", later.log_score_nats);
         card.text.push(nats.replace('-', "−"));
-        let errors = later.errors.iter();
+        let errors = later.open_loop.iter();
         card.text
             .extend(errors.map(|error| format!("{} there: {}", error.output, amount(error))));
     }
     card
 }
 
-fn parameters(answer: &Diagnosis) -> Card {
+fn parameters(answer: &Answer) -> Card {
     let number = |head: &str| Column {
         head: head.to_owned(),
         is_number: true,
@@ -201,16 +211,18 @@ fn parameters(answer: &Diagnosis) -> Card {
         columns.push(number("with what was found"));
     }
     columns.push(word("unit"));
-    let rows = answer.parameters.iter().take(PARAMETERS).map(|one| {
+    let all = answer.coefficients.iter();
+    let all = all.flat_map(|all| all.declared.iter().zip(all.nominal.iter().zip(all.best())));
+    let rows = all.take(PARAMETERS).map(|(declared, (nominal, best))| {
         let mut row = vec![
-            Cell::from(one.name.clone()),
-            Cell::from(format::short(one.declared, 4).replace('-', "−")),
-            cell(one.nominal, one.nominal_sigma),
+            Cell::from(nominal.name.clone()),
+            Cell::from(format::short(*declared, 4).replace('-', "−")),
+            cell(nominal.estimate, nominal.sigma),
         ];
         if has_findings {
-            row.push(cell(one.value, one.sigma));
+            row.push(cell(best.estimate, best.sigma));
         }
-        row.push(Cell::from(one.unit.clone()));
+        row.push(Cell::from(nominal.unit.clone()));
         row
     });
     Card {
@@ -226,18 +238,24 @@ fn parameters(answer: &Diagnosis) -> Card {
 }
 
 /// What to do next.
-fn next(answer: &Diagnosis) -> Card {
-    let text = if !answer.has_findings() {
-        "Nothing to add to the equations. What could go undetected depends on how the inputs move: an effect \
-         that is not excited does not show."
-    } else if answer.findings.is_empty() {
-        "No term of the catalogue explains it: look at the residual, and declare a term of your own with \
-         `effect()` in the script."
-    } else if answer.later_record.is_none() {
-        "Measure the gain on a second record with --validate, then write the terms into the equations with \
-         `extend`."
-    } else {
-        "Write the terms into the equations with `extend`, and derive the plant again."
+fn next(answer: &Answer) -> Card {
+    let text = match answer.verdict {
+        Verdict::Clean => {
+            "Nothing to add to the equations. What could go undetected depends on how the inputs move: an effect \
+             that is not excited does not show."
+        }
+        _ if !answer.search_complete => {
+            "The search ended at its budget of work: diagnose a part of the record, which takes less of it."
+        }
+        _ if answer.findings.is_empty() => {
+            "No term of the catalogue explains it: look at the residual, and declare a term of your own with \
+             `effect()` in the script."
+        }
+        _ if answer.later_record.is_none() => {
+            "Measure the gain on a second record with --validate, then write the terms into the equations with \
+             `extend`."
+        }
+        _ => "Write the terms into the equations with `extend`, and derive the plant again.",
     };
     Card {
         title: "Next".to_owned(),

@@ -1,13 +1,13 @@
 //! Sets, parameters, records and gain of a plant in tables.
 
-use gyrocal_plant::Diagnosed;
-use gyrocal_plant::answer::{Diagnosis, Estimate, Found, OutputError};
+use gyrocal_answer::{AlternativeKind, Answer, Coefficients, Finding, OutputError};
+use gyrocal_plant::{Diagnosed, sentences};
 use gyrocal_report::page::{
     Cell, Column, EstimateRow, Estimates, Item, Section, Table, Tint, ValueWithSigma,
 };
 use gyrocal_statistics::format;
 
-use super::{over_time, with_unit};
+use super::{over_time, rms};
 use crate::diagnosis::section;
 use crate::panels;
 
@@ -26,7 +26,7 @@ fn number(head: &str) -> Column {
 }
 
 /// Each finding with its set; `None` if nothing was found.
-pub(super) fn sets(answer: &Diagnosis) -> Option<Section> {
+pub(super) fn sets(answer: &Answer) -> Option<Section> {
     if !answer.has_findings() {
         return None;
     }
@@ -35,8 +35,8 @@ pub(super) fn sets(answer: &Diagnosis) -> Option<Section> {
         .iter()
         .map(|one| Item::Table(set(one)))
         .collect();
-    let unexplained = answer.unexplained.iter();
-    items.extend(unexplained.map(|one| Item::Text(one.sentence())));
+    let unmodelled = answer.remainder.unmodelled.iter();
+    items.extend(unmodelled.map(|one| Item::Text(sentences::unmodelled(one))));
     Some(section(
         "sets",
         "Sets",
@@ -45,29 +45,28 @@ pub(super) fn sets(answer: &Diagnosis) -> Option<Section> {
     ))
 }
 
-fn set(found: &Found) -> Table {
-    let sizes: Vec<String> = found.sizes.iter().map(|size| size.words()).collect();
+fn set(found: &Finding) -> Table {
+    let sizes: Vec<String> = found.parameters.iter().map(sentences::parameter).collect();
     let named = [
         found.effect.clone(),
         found.name.clone(),
         sizes.join(", "),
         "named".to_owned(),
     ];
-    let rival = |(id, deficit): &(String, f64)| {
-        let lacks = format!("{deficit:.1}");
-        [id.clone(), String::new(), lacks, "in the set".to_owned()]
-    };
-    let equal = |id: &String| {
-        let same = "no record tells it from the named one".to_owned();
-        [id.clone(), String::new(), "0".to_owned(), same]
-    };
-    let rivals = found.rivals.iter().map(rival);
-    let equivalents = found.equivalents.iter().map(equal);
-    let rows = rivals.chain(equivalents);
-    let rows = core::iter::once(named.map(Cell::from).to_vec())
-        .chain(rows.map(|row| row.map(Cell::from).to_vec()));
+    let others = found.alternatives.iter().map(|other| {
+        let lacks = other.log_likelihood_deficit;
+        let lacks = lacks.map_or_else(String::new, |nats| format!("{nats:.1}"));
+        let place = match other.kind {
+            AlternativeKind::ExactEquivalent => "no record tells it from the named one",
+            AlternativeKind::NotExcluded => "in the set",
+            _ => "not searched",
+        };
+        [other.effect.clone(), String::new(), lacks, place.to_owned()]
+    });
+    let rows = core::iter::once(named).chain(others);
+    let rows = rows.map(|row| row.map(Cell::from).to_vec());
     Table {
-        title: match found.rivals.len() + found.equivalents.len() {
+        title: match found.alternatives.len() {
             0 => format!("{}: its set has no other effect", found.effect),
             count => format!("{} and {count} more in its set", found.effect),
         },
@@ -81,39 +80,37 @@ fn set(found: &Found) -> Table {
     }
 }
 
-/// Parameters, and initial states of a record that is alone.
-pub(super) fn parameters(answer: &Diagnosis) -> Section {
-    section(
+/// Parameters, and initial states of a record that is alone; `None` without a fit.
+pub(super) fn parameters(answer: &Answer) -> Option<Section> {
+    let all = answer.coefficients.as_ref()?;
+    Some(section(
         "parameters",
         "Parameters",
         "Estimates with their standard deviations.",
         vec![Item::Estimates(estimates(
             "Parameters of the nominal model and with all findings",
-            &answer.parameters,
-            answer.has_findings(),
+            all,
         ))],
-    )
+    ))
 }
 
-fn estimates(title: &str, all: &[Estimate], has_findings: bool) -> Estimates {
+fn estimates(title: &str, all: &Coefficients) -> Estimates {
     let mut models = vec![(panels::NOMINAL.to_owned(), Tint::Nominal)];
-    if has_findings {
+    if all.extended.is_some() {
         models.push((panels::EXTENDED.to_owned(), Tint::Extended));
     }
-    let rows = all.iter().map(|one| {
-        let nominal = ValueWithSigma {
-            value: one.nominal,
-            sigma: one.nominal_sigma,
-        };
-        let extended = ValueWithSigma {
-            value: one.value,
+    let pairs = all.nominal.iter().zip(all.best());
+    let rows = all.declared.iter().zip(pairs);
+    let rows = rows.map(|(declared, (nominal, extended))| {
+        let values = [nominal, extended].map(|one| ValueWithSigma {
+            value: one.estimate,
             sigma: one.sigma,
-        };
+        });
         EstimateRow {
-            name: one.name.clone(),
-            unit: one.unit.clone(),
-            values: [nominal, extended].into_iter().take(models.len()).collect(),
-            note: format::short(one.declared, 4).replace('-', "−"),
+            name: nominal.name.clone(),
+            unit: nominal.unit.clone(),
+            values: values.into_iter().take(models.len()).collect(),
+            note: format::short(*declared, 4).replace('-', "−"),
             strong: false,
         }
     });
@@ -126,16 +123,16 @@ fn estimates(title: &str, all: &[Estimate], has_findings: bool) -> Estimates {
 }
 
 /// Each of several records; `None` of one.
-pub(super) fn records(answer: &Diagnosis) -> Option<Section> {
+pub(super) fn records(answer: &Answer) -> Option<Section> {
     if answer.records.is_empty() {
         return None;
     }
     let rows = answer.records.iter().map(|one| {
         let cells = [
             one.name.clone(),
-            one.rows.to_string(),
-            format::short(one.duration_s, 4),
-            one.alone.verdict.clone(),
+            one.record.rows.to_string(),
+            format::short(one.record.duration_s, 4),
+            sentences::alone(one),
         ];
         cells.map(Cell::from).to_vec()
     });
@@ -155,12 +152,12 @@ pub(super) fn records(answer: &Diagnosis) -> Option<Section> {
                 "{}: open-loop error with the models of all records",
                 one.name
             ),
-            &one.errors,
+            &one.open_loop,
             answer.has_findings(),
         )));
         let title = format!("Initial states of {}", one.name);
-        let own = estimates(&title, &one.initial, answer.has_findings());
-        items.push(Item::Estimates(own));
+        let initial = one.initial.iter();
+        items.extend(initial.map(|all| Item::Estimates(estimates(&title, all))));
     }
     Some(section(
         "records",
@@ -179,8 +176,8 @@ fn error_table(title: String, errors: &[OutputError], has_findings: bool) -> Tab
     let rows = errors.iter().map(|error| {
         let cells = [
             error.output.clone(),
-            with_unit(error.nominal, &error.unit),
-            with_unit(error.extended, &error.unit),
+            rms(error.nominal, &error.unit),
+            rms(error.extended, &error.unit),
         ];
         cells.into_iter().take(count).map(Cell::from).collect()
     });
@@ -197,33 +194,33 @@ pub(super) fn gain(diagnosed: &Diagnosed) -> Option<Section> {
     if !answer.has_findings() {
         return None;
     }
-    let horizon = |horizon_s: f64| format!("simulated over {} s", format::short(horizon_s, 4));
-    let mut items = vec![Item::Table(error_table(
-        format!(
-            "Open-loop error in the diagnosed data, {}",
-            horizon(answer.horizon_s)
-        ),
-        &answer.errors,
-        true,
-    ))];
-    match (&answer.later_record, &diagnosed.later) {
+    let open_loop = |of: &str, horizon_s: Option<f64>, errors: &[OutputError]| {
+        let over = format::short(horizon_s.unwrap_or_default(), 4);
+        let title = format!("Open-loop error in {of}, simulated over {over} s");
+        Item::Table(error_table(title, errors, true))
+    };
+    let mut items = vec![open_loop(
+        "the diagnosed data",
+        answer.horizon_s,
+        &answer.open_loop,
+    )];
+    let gain = answer.gain.as_ref();
+    let later = gain.and_then(|gain| gain.validation.as_ref());
+    match (later, &diagnosed.later) {
         (Some(later), Some(series)) => {
-            items.push(Item::Text(later.sentence(true)));
+            items.extend(sentences::later_record(answer).map(Item::Text));
             let title = format!(
                 "{:+.1} nats of predictive log score in the later record",
-                later.gain_nats
+                later.log_score_nats
             );
             let title = title.replace('-', "−");
             let whole = diagnosed.is_simulated_whole();
             items.push(Item::Chart(over_time::residual(title, series, whole)));
-            items.push(Item::Table(error_table(
-                format!(
-                    "Open-loop error in the later record, {}",
-                    horizon(later.horizon_s)
-                ),
-                &later.errors,
-                true,
-            )));
+            items.push(open_loop(
+                "the later record",
+                later.horizon_s,
+                &later.open_loop,
+            ));
         }
         _ => items.push(Item::Text(
             "No later record was given: --validate LATER.csv measures the gain where nothing was fitted."

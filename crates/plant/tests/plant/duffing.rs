@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use gyrocal_plant::{ColumnMap, SearchOptions, diagnose};
+use gyrocal_answer::write_text;
+use gyrocal_plant::{ColumnMap, SearchOptions, diagnose, sentences};
 use gyrocal_truth::plant::{Kind, Setting, simulate};
 
 use crate::{loaded, oscillator, record};
@@ -40,22 +41,23 @@ fn the_example_names_its_hidden_effect_and_gains_on_the_later_record() {
         &SearchOptions::default(),
     );
     let answer = diagnosed.unwrap().answer;
-    assert_eq!(answer.findings.len(), 1, "{:?}", answer.sentences());
+    write_text(&answer).unwrap();
+    assert_eq!(answer.findings.len(), 1, "{:?}", sentences::all(&answer));
     let found = &answer.findings[0];
-    let set = std::iter::once(&found.effect).chain(found.rivals.iter().map(|(id, _)| id));
-    assert!(set.into_iter().any(|id| id == "v_rate.x^3"), "{found:?}");
-    let size = &found.sizes[0];
+    assert!(found.set().any(|id| id == "v_rate.x^3"), "{found:?}");
+    let size = &found.parameters[0];
     // Four standard deviations.
     assert!(
-        (size.value + 0.05).abs() < 4.0 * size.sigma.unwrap(),
+        (size.estimate + 0.05).abs() < 4.0 * size.sigma.unwrap(),
         "{size:?}"
     );
-    let later = answer.later_record.unwrap();
-    assert!(later.gain_nats > 3.0, "{later:?}");
+    assert_eq!(answer.later_record.unwrap().rows, 800);
+    let later = answer.gain.unwrap().validation.unwrap();
+    assert!(later.log_score_nats > 3.0, "{later:?}");
     // The noise of the sensor is left, 0.01 m, and with it at most a tenth more.
-    assert!(later.errors[0].extended < 0.011, "{later:?}");
+    assert!(later.open_loop[0].extended.unwrap() < 0.011, "{later:?}");
     assert!(
-        later.errors[0].nominal > 1.5 * later.errors[0].extended,
+        later.open_loop[0].nominal.unwrap() > 1.5 * later.open_loop[0].extended.unwrap(),
         "{later:?}"
     );
 }
@@ -72,8 +74,12 @@ fn a_clean_record_with_misdeclared_noise_has_no_finding() {
         let answer = diagnose(&plant, record, None, &SearchOptions::default())
             .unwrap()
             .answer;
-        assert!(answer.findings.is_empty(), "{:?}", answer.sentences());
-        assert!(answer.unexplained.is_empty(), "{:?}", answer.sentences());
+        assert!(answer.findings.is_empty(), "{:?}", sentences::all(&answer));
+        assert!(
+            answer.remainder.unmodelled.is_empty(),
+            "{:?}",
+            sentences::all(&answer)
+        );
         let ratio = answer.noise[0].ratio;
         // Four standard deviations of the noise of 800 values.
         assert!((ratio / noise - 1.0).abs() < 0.1, "{ratio}");
@@ -87,10 +93,13 @@ fn a_sensor_gain_is_taken_up_by_the_gain_of_the_drive() {
     let answer = diagnose(&plant, record, None, &SearchOptions::default())
         .unwrap()
         .answer;
-    let gain = answer.left_out.iter().find(|one| one.effect == "y.gain");
+    let gain = answer
+        .not_searched
+        .iter()
+        .find(|one| one.effect == "y.gain");
     assert!(
         gain.is_some_and(|one| one.why.contains('g')),
         "{:?}",
-        answer.left_out
+        answer.not_searched
     );
 }

@@ -1,6 +1,7 @@
 //! Gauges, weak excitation, and inputs that are refused in words.
 
-use gyrocal_plant::{ColumnMap, FittedPlant, SearchOptions, diagnose};
+use gyrocal_answer::write_text;
+use gyrocal_plant::{ColumnMap, FittedPlant, SearchOptions, diagnose, sentences};
 use gyrocal_truth::plant::{Kind, Setting, simulate};
 
 use crate::{loaded, record};
@@ -23,7 +24,7 @@ fn the_scale_of_the_unmeasured_tank_is_a_gauge() {
     for name in ["k1", "k2", "k4"] {
         assert!(names.contains(&name), "{names:?}");
     }
-    assert!(directions[0].sentence().starts_with("no record"));
+    assert!(sentences::direction(&directions[0]).starts_with("No record"));
 }
 
 #[test]
@@ -42,8 +43,10 @@ fn an_input_that_never_moves_is_weak_excitation_and_no_gauge() {
     assert!(!directions[0].is_gauge, "{directions:?}");
     assert_eq!(directions[0].parts[0].name, "g");
     let options = SearchOptions::default();
-    let sentences = diagnose(&plant, still, None, &options).unwrap();
-    let sentences: Vec<String> = sentences.answer.sentences();
+    let answer = diagnose(&plant, still, None, &options).unwrap().answer;
+    assert!(answer.undetermined[0].held.is_some());
+    write_text(&answer).unwrap();
+    let sentences = sentences::all(&answer);
     for words in [
         "Input u never moves in this record",
         "with another input it would",

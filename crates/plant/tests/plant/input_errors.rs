@@ -1,7 +1,7 @@
 //! Delay and play of inputs.
 
-use gyrocal_plant::answer::{Diagnosis, Found};
-use gyrocal_plant::{SearchOptions, diagnose};
+use gyrocal_answer::Answer;
+use gyrocal_plant::{SearchOptions, diagnose, sentences};
 use gyrocal_truth::plant::{Kind, Run, Setting, simulate};
 
 use crate::{loaded, prepared};
@@ -11,16 +11,11 @@ const SEED: u64 = 72_000;
 
 const ROWS: usize = 600;
 
-fn diagnosed(kind: Kind, run: Run) -> Diagnosis {
+fn diagnosed(kind: Kind, run: Run) -> Answer {
     let plant = loaded(kind);
     let record = prepared(&plant, run);
     let diagnosed = diagnose(&plant, record, None, &SearchOptions::default());
     diagnosed.unwrap().answer
-}
-
-fn set(found: &Found) -> Vec<&str> {
-    let rivals = found.rivals.iter().map(|(id, _)| id.as_str());
-    rivals.chain([found.effect.as_str()]).collect()
 }
 
 #[test]
@@ -34,10 +29,10 @@ fn a_drive_that_is_logged_too_early_is_a_delay() {
     // A delay and a lag of half a row each do the same to second order: both sizes together are a maximum of
     // the likelihood too, but the delay alone explains as much.
     let [found] = answer.findings.as_slice() else {
-        panic!("{:?}", answer.sentences());
+        panic!("{:?}", sentences::all(&answer));
     };
-    assert_eq!(found.effect, "drive.delay", "{:?}", answer.sentences());
-    let size = found.sizes[0].value;
+    assert_eq!(found.effect, "drive.delay", "{:?}", sentences::all(&answer));
+    let size = found.parameters[0].estimate;
     assert!((size - step_s).abs() < 0.02 * step_s, "{size}");
 }
 
@@ -49,8 +44,8 @@ fn a_lag_that_a_delay_replaced_stays_in_its_set() {
         run.inputs.remove(0);
         run.inputs.push(run.inputs[ROWS - 2].clone());
         let answer = diagnosed(Kind::Servo, run);
-        let set = set(&answer.findings[0]);
-        assert_eq!(answer.findings.len(), 1, "{:?}", answer.sentences());
+        let set: Vec<&str> = answer.findings[0].set().collect();
+        assert_eq!(answer.findings.len(), 1, "{:?}", sentences::all(&answer));
         assert!(
             set.contains(&"drive.delay") && set.contains(&"y.lag"),
             "{set:?}"
@@ -67,10 +62,10 @@ fn an_oscillator_cannot_tell_a_late_drive_from_a_late_sensor() {
     let answer = diagnosed(Kind::Duffing, run);
     let found = &answer.findings[0];
     // A linear plant does not change in time: both are the same but for second differences.
-    let late = set(found).contains(&"u.delay");
-    assert!(late, "{:?}", answer.sentences());
+    let late = found.set().any(|id| id == "u.delay");
+    assert!(late, "{:?}", sentences::all(&answer));
     assert!(
-        (found.sizes[0].value - step_s).abs() < 0.1 * step_s,
+        (found.parameters[0].estimate - step_s).abs() < 0.1 * step_s,
         "{found:?}"
     );
 }
@@ -82,8 +77,8 @@ fn play_far_above_the_noise_of_the_drive_is_found() {
     let answer = diagnosed(Kind::Servo, simulate(&setting, None));
     let found = &answer.findings[0];
     assert!(
-        set(found).contains(&"drive.play"),
+        found.set().any(|id| id == "drive.play"),
         "{:?}",
-        answer.sentences()
+        sentences::all(&answer)
     );
 }

@@ -1,10 +1,10 @@
 //! Forecasts of runs of an oscillator, and the gain within records, beside what other fits give.
 
+use gyrocal_answer::{Answer, Coefficients, Finding, NextRun, write_text};
 use gyrocal_hypothesis::FittedModel as _;
-use gyrocal_plant::answer::{Diagnosis, NextRun};
 use gyrocal_plant::{
     ColumnMap, Diagnosed, FittedPlant, LoadedPlant, NamedRecord, PlantRecord, SearchOptions,
-    diagnose, diagnose_records,
+    diagnose, diagnose_records, mean_ratio, sentences,
 };
 use gyrocal_truth::plant::Kind;
 
@@ -28,7 +28,7 @@ fn alone(plant: &LoadedPlant, record: &PlantRecord) -> Diagnosed {
     diagnose(plant, record.clone(), None, &SearchOptions::default()).unwrap()
 }
 
-fn together(plant: &LoadedPlant, records: [&PlantRecord; 2]) -> Diagnosis {
+fn together(plant: &LoadedPlant, records: [&PlantRecord; 2]) -> Answer {
     let records = records.map(|record| named("", record.clone())).to_vec();
     let found = diagnose_records(plant, records, None, &SearchOptions::default());
     found.unwrap().together.answer
@@ -53,7 +53,12 @@ fn standard_deviations_after_the_run_are_as_forecast() {
         found.findings[0].effect,
         diagnosed.answer.findings[0].effect
     );
-    for (one, predicted) in found.parameters.iter().zip(&forecast.sigmas) {
+    for (one, predicted) in found
+        .coefficients
+        .iter()
+        .flat_map(Coefficients::best)
+        .zip(&forecast.sigmas)
+    {
         assert_eq!(one.name, predicted.name);
         assert!(predicted.after < predicted.now);
         let ratio = one.sigma / predicted.after;
@@ -61,7 +66,7 @@ fn standard_deviations_after_the_run_are_as_forecast() {
         assert!((0.88..1.12).contains(&ratio), "{} {ratio}", one.name);
     }
     let size = forecast.sigmas.last().unwrap();
-    let found = found.findings[0].sizes[0].sigma.unwrap();
+    let found = found.findings[0].parameters[0].sigma.unwrap();
     assert!(
         (0.88..1.12).contains(&(found / size.after)),
         "{size:?} {found}"
@@ -85,8 +90,9 @@ fn the_run_that_moves_more_comes_first() {
         panic!("two runs")
     };
     assert_eq!((best.name.as_str(), other.name.as_str()), ("more", "less"));
-    assert!(best.mean_ratio() < other.mean_ratio());
-    let last = diagnosed.answer.sentences().pop().unwrap();
+    assert!(mean_ratio(best) < mean_ratio(other));
+    write_text(&diagnosed.answer).unwrap();
+    let last = sentences::all(&diagnosed.answer).pop().unwrap();
     assert!(last.starts_with("less (400 rows,"), "{last}");
 }
 
@@ -103,15 +109,11 @@ fn rivals_leave_as_often_as_forecast() {
         }
         let found = together(&plant, [&first, &second]);
         for pair in &forecast.told_apart {
-            let sets = found.findings.iter().map(|one| {
-                let rivals = one.rivals.iter().map(|(rival, _)| rival);
-                core::iter::once(&one.effect)
-                    .chain(rivals)
-                    .collect::<Vec<_>>()
-            });
-            let both =
-                |set: &Vec<&String>| set.contains(&&pair.effect) && set.contains(&&pair.rival);
-            seen += f64::from(u8::from(!sets.into_iter().any(|set| both(&set))));
+            let both = |one: &Finding| {
+                let names = [&pair.effect, &pair.alternative];
+                names.iter().all(|name| one.set().any(|id| id == *name))
+            };
+            seen += f64::from(u8::from(!found.findings.iter().any(both)));
             expected += pair.probability;
             variance += pair.probability * (1.0 - pair.probability);
             pairs += 1;
@@ -147,7 +149,7 @@ fn the_gain_in_a_left_out_record_is_that_of_fits_without_it() {
     let noise = searched.fitted.rate_noise();
     let with = log_evidence(&searched.fitted);
     let without = log_evidence(&searched.nominal.with_rate_noise(&noise).unwrap());
-    let gains = answer.cross_validation.unwrap().gains_nats;
+    let gains = answer.gain.unwrap().block_log_score_nats;
     for (gain, other) in gains.iter().zip(records.into_iter().rev()) {
         let nominal = FittedPlant::nominal(&plant, other, &[]).unwrap();
         let nominal = nominal.with_rate_noise(&noise).unwrap();
@@ -165,19 +167,28 @@ fn parts_of_a_record_gain_by_what_is_there_and_nothing_is_said_of_nothing() {
     let Diagnosed {
         answer, searched, ..
     } = alone(&plant, &record(&plant, 41, -0.05));
-    let parts = answer.cross_validation.as_ref().unwrap();
-    assert_eq!(parts.gains_nats.len(), 6);
+    let parts = answer.gain.as_ref().unwrap();
+    assert_eq!(parts.block_log_score_nats.len(), 6);
     // What is left out is farther from the nominal model than what it was fitted to.
     let nominal = searched
         .nominal
         .with_rate_noise(&searched.fitted.rate_noise());
     let in_fit = 0.5 * (nominal.unwrap().deviance() - searched.fitted.deviance());
-    assert!(parts.gain_nats() > in_fit, "{parts:?} {in_fit}");
-    assert!(parts.gains_nats.iter().flatten().all(|gain| *gain > 0.0));
-    let words = parts.sentence();
+    assert!(
+        parts.cross_validated_log_score_nats > in_fit,
+        "{parts:?} {in_fit}"
+    );
+    assert!(
+        parts
+            .block_log_score_nats
+            .iter()
+            .flatten()
+            .all(|gain| *gain > 0.0)
+    );
+    let words = sentences::parts(parts);
     assert!(words.contains("what was found holds there"), "{words}");
     let clean = alone(&plant, &record(&plant, 41, 0.0)).answer;
-    assert_eq!(clean.cross_validation, None);
+    assert_eq!(clean.gain, None);
 }
 
 #[test]

@@ -1,8 +1,8 @@
 //! Plants of a population, two of them under feedback: clean records with noise that is misdeclared, and
 //! records with one hidden effect, from simulators that share no code with the models.
 
-use gyrocal_plant::answer::Diagnosis;
-use gyrocal_plant::{SearchOptions, diagnose};
+use gyrocal_answer::{Answer, Verdict};
+use gyrocal_plant::{SearchOptions, diagnose, sentences};
 use gyrocal_truth::plant::{Kind, Setting, Stream, strength, with_strength};
 
 use crate::{loaded, record};
@@ -14,7 +14,7 @@ const ROWS: usize = 600;
 
 const PLANTS: [Kind; 3] = [Kind::Duffing, Kind::Servo, Kind::CartPole];
 
-fn diagnosed(setting: &Setting) -> Diagnosis {
+fn diagnosed(setting: &Setting) -> Answer {
     let plant = loaded(setting.kind);
     diagnose(
         &plant,
@@ -35,8 +35,8 @@ fn clean_records_have_no_findings() {
             let mut setting = Setting::random(kind, seed, ROWS);
             setting.noise = Stream::new(seed, 9).log_between(0.5, 2.0);
             let answer = diagnosed(&setting);
-            if !(answer.findings.is_empty() && answer.unexplained.is_empty()) {
-                alarms.push((kind, seed, answer.sentences()));
+            if answer.has_findings() {
+                alarms.push((kind, seed, sentences::all(&answer)));
             }
         }
     }
@@ -60,13 +60,17 @@ fn sets_hold_the_hidden_effect() {
             }
             count += 1;
             let answer = diagnosed(&setting);
+            let words = sentences::verdict(&answer);
+            let is_open = answer.verdict == Verdict::NotSettled;
+            assert_eq!(words.contains("is not settled"), is_open, "{words}");
+            let mut findings = answer.findings.iter();
+            assert!(findings.all(|one| words.contains(&one.effect)), "{words}");
             let holds = answer.findings.iter().any(|found| {
-                let rivals = found.rivals.iter().map(|(id, _)| id);
-                let mut set = rivals.chain(&found.equivalents);
-                found.effect == effect.0 || set.any(|id| id == effect.0)
+                let mut set = found.set().chain(found.equivalents());
+                set.any(|id| id == effect.0)
             });
             if !holds {
-                misses.push((kind, seed, effect.0, answer.sentences()));
+                misses.push((kind, seed, effect.0, sentences::all(&answer)));
             }
         }
     }

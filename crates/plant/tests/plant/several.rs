@@ -1,8 +1,10 @@
 //! Several records of one oscillator: information adds, initial states are those of each record.
 
+use gyrocal_answer::write_text;
 use gyrocal_hypothesis::FittedModel as _;
 use gyrocal_plant::{
     FittedPlant, LoadedPlant, NamedRecord, PlantRecord, SearchOptions, diagnose, diagnose_records,
+    sentences,
 };
 use gyrocal_truth::plant::{Kind, Setting};
 use nalgebra::DMatrix;
@@ -112,12 +114,12 @@ fn an_effect_is_found_together_and_told_for_each() {
     let options = SearchOptions::default();
     let found = diagnose_records(&plant, records.clone(), None, &options).unwrap();
     let answer = &found.together.answer;
-    assert_eq!(answer.findings.len(), 1, "{:?}", answer.sentences());
+    assert_eq!(answer.findings.len(), 1, "{:?}", sentences::all(answer));
     let own = &answer.findings[0];
     assert_eq!(own.effect, "v_rate.x^3");
-    let size = &own.sizes[0];
+    let size = &own.parameters[0];
     assert!(
-        (size.value + 0.05).abs() < 4.0 * size.sigma.unwrap(),
+        (size.estimate + 0.05).abs() < 4.0 * size.sigma.unwrap(),
         "{size:?}"
     );
     // Information on an effect with the parameters projected out is at least the sum of that of each record: what
@@ -133,18 +135,19 @@ fn an_effect_is_found_together_and_told_for_each() {
     // A tenth for the errors of the sizes alone, some sigmas of 82.
     assert!(own.z * own.z > 0.9 * sum, "{} {alone:?}", own.z);
     assert_eq!(answer.records.len(), 3);
+    write_text(answer).unwrap();
     for one in &answer.records {
-        assert_eq!(one.initial.len(), STATES);
+        assert_eq!(one.initial.as_ref().unwrap().nominal.len(), STATES);
         // The noise of the sensor, 0.01 m, is left.
-        assert!(one.errors[0].extended < 0.0115, "{one:?}");
+        assert!(one.open_loop[0].extended.unwrap() < 0.0115, "{one:?}");
     }
-    let verdicts = answer.records.iter().map(|one| &one.alone.verdict);
+    let verdicts = answer.records.iter().map(sentences::alone);
     let found_alone: Vec<bool> = verdicts
         .map(|one| one.contains("lacks one effect"))
         .collect();
     assert_eq!(found_alone, [true, true, false]);
     assert_eq!(
-        answer.parameters.len(),
+        answer.coefficients.as_ref().unwrap().nominal.len(),
         3,
         "initial states are those of each record"
     );
@@ -171,17 +174,16 @@ fn one_record_is_as_alone_and_a_change_belongs_to_its_record() {
         .answer;
     let found = &answer.findings[0];
     assert_eq!(
-        (found.effect.as_str(), found.record),
+        (found.effect.as_str(), found.in_record),
         ("y.step", Some(2)),
         "{found:?}"
     );
-    let onset = found
-        .sizes
-        .iter()
-        .find(|size| size.name == "onset_s")
-        .unwrap();
+    let onset = found.parameter("onset_s").unwrap();
     // A step of five standard deviations of a reading is seen within a few rows.
-    assert!((onset.value - onset_s).abs() < 0.5, "{onset:?} {onset_s}");
+    assert!(
+        (onset.estimate - onset_s).abs() < 0.5,
+        "{onset:?} {onset_s}"
+    );
 }
 
 #[test]

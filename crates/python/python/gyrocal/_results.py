@@ -199,7 +199,7 @@ class Diagnosis(Result):
     setup: list[Fields]
     findings: list[Fields]
     ranking: list[Fields]
-    cannot_tell: list[Fields]
+    set_ups: Fields | None
     gain: Fields | None
     remainder: Fields
     threshold: float | None
@@ -223,17 +223,7 @@ class Diagnosis(Result):
 
     def _rows(self) -> list[dict[str, Any]]:
         """One row a finding; the parameters are columns."""
-        rows = []
-        for finding in self._fields["findings"]:
-            keys = ("effect", "name", "kind", "z", "p_value", "coverage", "gain_nats", "accepted")
-            row = {key: finding.get(key) for key in keys}
-            row["alternatives"] = [other["effect"] for other in finding.get("alternatives", [])]
-            for parameter in finding["parameters"]:
-                row[parameter["name"]] = parameter["estimate"]
-                row[parameter["name"] + "_sigma"] = parameter["sigma"]
-                row[parameter["name"] + "_unit"] = parameter["unit"]
-            rows.append(row)
-        return rows
+        return _finding_rows(self._fields["findings"])
 
     def __repr__(self) -> str:
         effects = ", ".join(finding["effect"] for finding in self._fields["findings"])
@@ -406,14 +396,15 @@ class PlantDiagnosis(Result):
 
     __slots__ = ("_charts",)
     _charts: _gyrocal.PlantPage | None
-    plant: str
-    rows: int
+    verdict: str
+    record: Fields
     findings: list[Fields]
-    unexplained: list[Fields]
-    parameters: list[Fields]
+    coefficients: Fields
+    open_loop: list[Fields]
     noise: list[Fields]
     undetermined: list[Fields]
-    cross_validation: Fields | None
+    gain: Fields | None
+    remainder: Fields
     later_record: Fields | None
 
     def __init__(
@@ -421,6 +412,11 @@ class PlantDiagnosis(Result):
     ) -> None:
         super().__init__(text, blocks)
         object.__setattr__(self, "_charts", charts)
+
+    @property
+    def plant(self) -> str:
+        """Name of the plant."""
+        return str(self._fields["subject"]["plant"])
 
     def _page(self) -> _gyrocal.PlantPage | None:
         return self._charts
@@ -430,17 +426,8 @@ class PlantDiagnosis(Result):
         return [{"paragraph": sentence} for sentence in super()._shown()]
 
     def _rows(self) -> list[dict[str, Any]]:
-        """One row a finding; its sizes are columns."""
-        rows = []
-        for finding in self._fields["findings"]:
-            row = {key: finding[key] for key in ("effect", "name", "formula", "z", "p_value")}
-            row["alternatives"] = [name for name, _ in finding["rivals"]]
-            for size in finding["sizes"]:
-                row[size["name"]] = size["value"]
-                row[size["name"] + "_sigma"] = size["sigma"]
-                row[size["name"] + "_unit"] = size["unit"]
-            rows.append(row)
-        return rows
+        """One row a finding; its parameters are columns."""
+        return _finding_rows(self._fields["findings"])
 
     def __repr__(self) -> str:
         effects = ", ".join(finding["effect"] for finding in self._fields["findings"])
@@ -497,6 +484,21 @@ class Simulation(Result):
 
     def __repr__(self) -> str:
         return f"<gyrocal.Simulation: {self.rows} rows, seed {self.manifest.seed}>"
+
+
+def _finding_rows(findings: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """One row a finding; the parameters are columns."""
+    keys = ("effect", "name", "kind", "formula", "z", "p_value", "coverage", "gain_nats", "accepted")
+    rows = []
+    for finding in findings:
+        row = {key: finding[key] for key in keys if key in finding}
+        row["alternatives"] = [other["effect"] for other in finding["alternatives"]]
+        for parameter in finding["parameters"]:
+            row[parameter["name"]] = parameter["estimate"]
+            row[parameter["name"] + "_sigma"] = parameter["sigma"]
+            row[parameter["name"] + "_unit"] = parameter["unit"]
+        rows.append(row)
+    return rows
 
 
 def _wrap(text: str, first: str = "", rest: str = "") -> str:

@@ -257,7 +257,7 @@ fn main() {
         println!();
     }
     let gain = found.gain.unwrap();
-    let rms_g = gain.free_run_rms_g;
+    let rms_g = gain.free_run_rms_g.unwrap();
     let nats = gain.cross_validated_log_score_nats;
     println!("{nats:e} {:e} {:e} {:e}", rms_g.before, rms_g.after, rms_g.noise);
 }

@@ -1,6 +1,6 @@
 //! Effects by test statistic, and the gain of the extended model.
 
-use gyrocal_diagnosis::result;
+use gyrocal_answer::{CoefficientEstimate, Gain, Prediction};
 use gyrocal_pages::Ranked;
 use gyrocal_report::page::Tint;
 use gyrocal_report::{
@@ -11,15 +11,15 @@ use super::{DiagnosisRun, causes, subtitle};
 
 /// All effects of the first search by their statistic; `None` if nothing could be searched.
 pub(super) fn ranking(found: &DiagnosisRun<'_>) -> Option<Ranking> {
-    let ranked = Ranked::of_result(&found.diagnosis.result)?;
+    let ranked = Ranked::of(&found.diagnosis.result)?;
     Some(ranked.picture(&subtitle(found)))
 }
 
 /// Gain of the extended model in cross-validation, and its prediction of a later record.
-pub(super) fn gain(found: &DiagnosisRun<'_>, gain: &result::Gain) -> CrossValidation {
+pub(super) fn gain(found: &DiagnosisRun<'_>, gain: &Gain) -> CrossValidation {
     let compensation = found.diagnosis.later.as_ref().map(|later| &later.attitude);
     let blocks = &gain.block_log_score_nats;
-    let better = blocks.iter().filter(|nats| **nats > 0.0).count();
+    let better = blocks.iter().flatten().filter(|nats| **nats > 0.0).count();
     CrossValidation {
         title: format!(
             "{} improves the predictive log score by {:.1} nats, in {better} of {} blocks",
@@ -30,12 +30,12 @@ pub(super) fn gain(found: &DiagnosisRun<'_>, gain: &result::Gain) -> CrossValida
         subtitle: format!(
             "{}; {}",
             match gain.prediction {
-                result::Prediction::CrossValidated => "blocked cross-validation",
-                result::Prediction::Forward => "each block predicted from those before it",
+                Prediction::CrossValidated => "blocked cross-validation",
+                Prediction::Forward => "each block predicted from those before it",
             },
             subtitle(found)
         ),
-        block_gain_nats: blocks.clone(),
+        block_gain_nats: blocks.iter().map(|nats| nats.unwrap_or(0.0)).collect(),
         prediction: compensation.map(|found| PredictionError {
             name: "Later record".to_owned(),
             quantity: "drift prediction error".to_owned(),
@@ -56,7 +56,7 @@ pub(super) fn coefficients(found: &DiagnosisRun<'_>) -> Option<Comparison> {
     let largest = shifts
         .iter()
         .max_by(|a, b| a.in_sigmas.abs().total_cmp(&b.in_sigmas.abs()))?;
-    let compared = |one: &result::CoefficientEstimate| ComparedEstimate {
+    let compared = |one: &CoefficientEstimate| ComparedEstimate {
         value: one.estimate,
         sigma: one.sigma,
     };

@@ -1,6 +1,6 @@
 //! The verdict of `gyrocal calibrate`, in the scale of the diagnosis, and what follows from it.
 
-use gyrocal_diagnosis::DiagnosisResult;
+use gyrocal_answer::Answer;
 use gyrocal_record::{CalibrationReport, FitVerdict};
 
 use super::{JSON, folder, report, unwrapped};
@@ -28,12 +28,12 @@ fn a_fault_that_the_diagnosis_finds_is_told_with_its_probability() {
     assert!(said.contains(next), "{said}");
     let found = report(&folder);
     assert_eq!(found.verdict, FitVerdict::EffectsFound);
-    let diagnosis: DiagnosisResult = serde_json::from_str(&diagnose::hidden_fault()).unwrap();
+    let diagnosis: Answer = serde_json::from_str(&diagnose::hidden_fault()).unwrap();
     let [test] = &found.effects[..] else {
         panic!("{:?}", found.effects)
     };
     assert_eq!(test.effect.as_deref(), Some(&*diagnosis.findings[0].effect));
-    assert_eq!(test.p_value, diagnosis.findings[0].p_value);
+    assert_eq!(Some(test.p_value), diagnosis.findings[0].p_value);
     assert!(test.significant && test.z > 15.0, "{test:?}");
     // Both give the mean of a row.
     let nis = diagnosis.residuals.unwrap().nis.unwrap().mean;

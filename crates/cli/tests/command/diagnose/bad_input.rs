@@ -1,7 +1,6 @@
 //! Refused inputs of `gyrocal diagnose`: exit code 1 or 2, one message, no output.
 
-use gyrocal_diagnosis::Verdict;
-use gyrocal_diagnosis::result::{NotTestedReason, ResidualVerdict};
+use gyrocal_answer::{NotTestedReason, ResidualVerdict, Verdict};
 
 use super::{BENCH, RECORD, folder};
 

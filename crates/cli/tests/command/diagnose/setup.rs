@@ -1,7 +1,7 @@
 //! Gross errors of the set-up: told, mended or refused.
 
+use gyrocal_answer::{Answer, Verdict};
 use gyrocal_design::PlanResult;
-use gyrocal_diagnosis::{DiagnosisResult, Verdict};
 use gyrocal_record::{CalibrationReport, FitVerdict};
 
 use super::{BENCH, RECORD, folder, report};
@@ -29,7 +29,7 @@ fn negate_latitude(folder: &Folder) {
     folder.put(BENCH, text);
 }
 
-fn stopped(folder: &Folder) -> (String, DiagnosisResult) {
+fn stopped(folder: &Folder) -> (String, Answer) {
     let said = folder.succeed(&DIAGNOSE);
     let report = report(folder, "o.json");
     assert_eq!(report.verdict, Verdict::Setup);

@@ -1,8 +1,7 @@
 //! `gyrocal diagnose` of several records.
 
+use gyrocal_answer::{SizeChoice, Verdict};
 use gyrocal_design::PlanResult;
-use gyrocal_diagnosis::Verdict;
-use gyrocal_diagnosis::result::SizeChoice;
 use gyrocal_truth::{Coefficients, Hidden, InitialAttitude, Scenario};
 
 use super::report;

@@ -28,7 +28,7 @@ fn a_later_record_tells_what_the_extended_model_wins() {
     let validation = gain.validation.unwrap();
     // Fifteen sigmas, at an attitude like the first.
     assert!(validation.log_score_nats > 8.0, "{validation:?}");
-    assert_eq!(validation.compensation.after_h, 24.0);
+    assert_eq!(validation.compensation.unwrap().after_h, 24.0);
     let words = said.replace('\n', " ");
     assert!(
         words.contains("Validation on later.csv: the extended model improves the predictive"),

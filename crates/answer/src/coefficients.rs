@@ -6,20 +6,28 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Coefficients {
+    /// Declared values, in the order of the nominal ones; none of a platform, whose bench file has a prior.
+    pub declared: Vec<f64>,
     /// Estimates of the nominal model.
     pub nominal: Vec<CoefficientEstimate>,
     /// Estimates of the extended model, in the same order; `None` if no effect was accepted.
     pub extended: Option<Vec<CoefficientEstimate>>,
     /// The same over all members of the confidence sets, each with the weight of its penalised
     /// likelihood; `None` if no effect was accepted.
-    #[serde(default)]
     pub over_set: Option<Vec<CoefficientInterval>>,
     /// The members of the confidence sets, the likeliest first; empty if there is only one.
-    #[serde(default)]
     pub members: Vec<SetMember>,
     /// Covariance of the extended estimates, row by row, in products of their units; of the nominal
-    /// ones if no effect was accepted.
+    /// ones if no effect was accepted; empty of a plant.
     pub covariance: Vec<Vec<f64>>,
+}
+
+impl Coefficients {
+    /// Estimates of the extended model, or of the nominal one if no effect was accepted.
+    #[must_use]
+    pub fn best(&self) -> &[CoefficientEstimate] {
+        self.extended.as_ref().unwrap_or(&self.nominal)
+    }
 }
 
 /// One drift coefficient over all members of the confidence sets.
@@ -35,7 +43,6 @@ pub struct CoefficientInterval {
     /// Its 2.5 % and 97.5 % quantiles, in `unit`: of a mixture of Student's distributions.
     pub interval: [f64; 2],
     /// Degrees of freedom of the noise that the sigma rests on; `None` where it was not estimated.
-    #[serde(default)]
     pub degrees_of_freedom: Option<f64>,
     /// The unit.
     pub unit: String,

@@ -2,9 +2,9 @@
 
 use gyrocal_record::ResultTable;
 
-use super::{CoefficientEstimate, DiagnosisResult, Finding, Parameter};
+use crate::{Answer, CoefficientEstimate, Finding, Parameter};
 
-impl DiagnosisResult {
+impl Answer {
     /// The findings, one row for each parameter.
     #[must_use]
     pub fn finding_table(&self) -> ResultTable {
@@ -15,9 +15,8 @@ impl DiagnosisResult {
             .collect();
         let each = || all.iter();
         let names = |finding: &Finding| {
-            let others = finding.alternatives.iter().map(|other| &*other.effect);
-            let equivalents = finding.equivalents.iter().map(|other| &*other.effect);
-            let all: Vec<&str> = others.chain(equivalents).collect();
+            let all = finding.alternatives.iter().map(|other| &*other.effect);
+            let all: Vec<&str> = all.collect();
             (!all.is_empty()).then(|| all.join(" "))
         };
         ResultTable::default()
@@ -28,7 +27,7 @@ impl DiagnosisResult {
             .numbers("sigma", each().map(|(_, one)| one.sigma))
             .texts("unit", each().map(|(_, one)| Some(&*one.unit)))
             .numbers("z", each().map(|(finding, _)| Some(finding.z)))
-            .numbers("p_value", each().map(|(finding, _)| Some(finding.p_value)))
+            .numbers("p_value", each().map(|(finding, _)| finding.p_value))
             .texts("may_also_be", each().map(|(finding, _)| names(finding)))
             .numbers("gain_nats", each().map(|(finding, _)| finding.gain_nats))
             .texts(

@@ -64,3 +64,15 @@ pub struct Estimated {
     /// Its standard deviation.
     pub sigma: f64,
 }
+
+/// An estimated noise.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct NoiseLevel {
+    /// The channel: `accel_x` to `gyro_z` of a platform, an output or a rate of a plant.
+    pub channel: String,
+    /// Standard deviation over the declared one.
+    pub ratio: f64,
+    /// Its 95 % interval.
+    pub interval: [f64; 2],
+}

@@ -9,8 +9,8 @@ use serde::{Deserialize, Serialize};
 pub struct ResidualTest {
     /// The answer.
     pub verdict: ResidualVerdict,
-    /// Probability of as much structure in white innovations, all tests together.
-    pub p_value: f64,
+    /// Probability of as much structure in white innovations, all tests together; `None` if none could be made.
+    pub p_value: Option<f64>,
     /// Channel, period and size of the structure, or the tests that could not be made; empty if the
     /// innovations are white.
     pub description: String,
@@ -18,16 +18,27 @@ pub struct ResidualTest {
     pub line: Option<ResidualLine>,
     /// Correlation of the innovations over rows; `None` if the record is too short.
     pub correlation: Option<ResidualCorrelation>,
+    /// Whiteness of what is left of each output of a plant.
+    pub outputs: Vec<OutputTest>,
     /// Terms that the catalogue does not hold, in the order in which they were found; they are in
     /// the extended model.
     pub unmodelled: Vec<UnmodelledTerm>,
+}
+
+/// Test of what the model with all causes leaves of an output.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct OutputTest {
+    /// The output.
+    pub output: String,
+    /// Probability of as much correlation in white innovations.
+    pub p_value: f64,
 }
 
 /// Verdict of the residual test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
-#[non_exhaustive]
 pub enum ResidualVerdict {
     /// The innovations are white.
     White,
@@ -71,14 +82,15 @@ pub struct ResidualCorrelation {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct UnmodelledTerm {
-    /// Channel that it enters: `gyro_x` to `gyro_z` of a drift, `accel_x` to `accel_z` of a reading.
+    /// Channel that it enters: `gyro_x` to `gyro_z` of a drift, `accel_x` to `accel_z` of a reading; of a plant the
+    /// rate, output or parameter.
     pub channel: String,
     /// Its pattern.
     pub pattern: UnmodelledPattern,
     /// Period of a line \[h\].
     pub period_h: Option<f64>,
-    /// Component of specific force that a curve depends on: `x`, `y` or `z`.
-    pub force_axis: Option<String>,
+    /// What a curve depends on: component `x`, `y` or `z` of specific force, or a variable of a plant.
+    pub depends_on: Option<String>,
     /// Amplitude of a line, root mean square of a curve, in `unit`.
     pub size: f64,
     /// The unit.
@@ -91,7 +103,6 @@ pub struct UnmodelledTerm {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
-#[non_exhaustive]
 pub enum UnmodelledPattern {
     /// A sine over time.
     Line,

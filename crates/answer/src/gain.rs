@@ -9,16 +9,16 @@ pub struct Gain {
     /// Effects in the model: the accepted ones; if none is, all significant causes.
     pub effects: Vec<String>,
     /// Rows that a block is predicted from.
-    #[serde(default)]
     pub prediction: Prediction,
     /// Predictive log score of the blocks of the record: extended less nominal, sum over all blocks
     /// \[nats\].
     pub cross_validated_log_score_nats: f64,
-    /// The same block by block \[nats\].
-    pub block_log_score_nats: Vec<f64>,
-    /// Error of the open-loop simulation.
-    pub free_run_rms_g: FreeRun,
-    /// Change of each drift coefficient.
+    /// The same block by block \[nats\]; `None` of a block without which the others do not determine the effects.
+    /// Of several records of a plant each is a block.
+    pub block_log_score_nats: Vec<Option<f64>>,
+    /// Error of the open-loop simulation of a platform.
+    pub free_run_rms_g: Option<FreeRun>,
+    /// Change of each drift coefficient of a platform.
     pub coefficient_shift: Vec<CoefficientShift>,
     /// Validation on a later record, if one was given and an effect is accepted.
     pub validation: Option<Validation>,
@@ -78,8 +78,26 @@ pub struct CoefficientShift {
 pub struct Validation {
     /// Predictive log score of that record given the diagnosed one: extended less nominal \[nats\].
     pub log_score_nats: f64,
-    /// Attitude error under compensation.
-    pub compensation: Compensation,
+    /// Attitude error under compensation, of a platform.
+    pub compensation: Option<Compensation>,
+    /// Errors of simulations of a plant's outputs.
+    pub open_loop: Vec<OutputError>,
+    /// Time over which these go on \[s\]; `None` of a platform.
+    pub horizon_s: Option<f64>,
+}
+
+/// Root mean square error of an output in simulations.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct OutputError {
+    /// The output.
+    pub output: String,
+    /// Its unit.
+    pub unit: String,
+    /// With the nominal model; `None` where the simulation leaves the finite numbers.
+    pub nominal: Option<f64>,
+    /// With all findings; `None` as above.
+    pub extended: Option<f64>,
 }
 
 /// Angle between the attitude that the diagnosed record predicts and the one that the later

@@ -1,23 +1,8 @@
-//! Several records of one platform.
+//! Sizes of an effect in several records.
 
 use serde::{Deserialize, Serialize};
 
-use super::{DiagnosisResult, Estimated, RecordSummary};
-
-/// One of several records that were diagnosed together.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct RecordResult {
-    /// Its name: that of its file.
-    pub name: String,
-    /// Size of the record.
-    pub record: RecordSummary,
-    /// Offsets of the constant drifts of its turn-on from those of the mean turn-on \[deg/h\], by axis;
-    /// `None` where the bench files do not declare that turn-ons differ.
-    pub turn_on_deg_per_h: Option<[Estimated; 3]>,
-    /// The answer of this record alone.
-    pub alone: DiagnosisResult,
-}
+use crate::Estimated;
 
 /// Sizes of an effect in each record, all else shared.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -46,7 +31,6 @@ pub struct RecordSize {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
-#[non_exhaustive]
 pub enum SizeChoice {
     /// One size, at odds of three to one at least.
     Shared,

@@ -1,62 +1,23 @@
-//! The answer of a diagnosis as plain data, which is also its JSON contract.
-//!
-//! [`DiagnosisResult`] holds all that a user is told. It is what `gyrocal diagnose --json` writes,
-//! key by key, what [`read`] reads back, and all that [`crate::prose`] makes sentences from. Keys of
-//! one schema version keep their meaning; a version may gain keys. With the feature `schema` every
-//! type has its JSON Schema (feature `schema`); `docs/schema/diagnosis.schema.json` is the committed copy.
-//!
-//! Series over the rows of a record, which pictures need in addition, are fields of
-//! [`crate::Diagnosis`].
+//! The answer of a diagnosis.
 
-mod allan;
-mod audit;
-mod coefficients;
-mod filter;
-mod finding;
-mod gain;
-mod limits;
-mod magnitude;
-mod read;
-mod records;
-mod residual_test;
-mod residuals;
-#[cfg(feature = "schema")]
-mod schema;
-mod tables;
-
-pub use gyrocal_record::SetupProblem;
-use gyrocal_record::{Input, Manifest, NoiseReport};
+use gyrocal_record::{Input, Manifest, SetupProblem};
 use serde::{Deserialize, Serialize};
 
-pub use allan::{AllanCourse, AllanPoint, AllanTest};
-pub use audit::{Estimated, Gaps, ModelNoise, NoiseAuditSummary, RecordSummary};
-pub use coefficients::{CoefficientEstimate, CoefficientInterval, Coefficients, SetMember};
-pub use filter::FilterTest;
-pub use finding::{Alternative, Equivalent, Finding, FindingKind, Parameter};
-pub use gain::{CoefficientShift, Compensation, FreeRun, Gain, Prediction, Validation};
-pub use limits::{
-    Experiment, ExperimentKind, Indistinguishable, NotTested, NotTestedReason, Power, RankedEffect,
-    Relation,
+use crate::{
+    AllanTest, Coefficients, Estimated, FilterTest, Finding, FindingKind, Gain, MagnitudeTest,
+    ModelNoise, NextRun, NoiseAuditSummary, NoiseLevel, NotTested, NotTestedReason, NullDirection,
+    OutputError, Power, RankedEffect, RecordSummary, ResidualTest, ResidualVerdict, Residuals,
+    SetUps, Starts,
 };
-pub use magnitude::MagnitudeTest;
-pub use read::{read, read_text};
-pub use records::{RecordResult, RecordSize, SizeChoice, SizesByRecord};
-pub use residual_test::{
-    ResidualCorrelation, ResidualLine, ResidualTest, ResidualVerdict, UnmodelledPattern,
-    UnmodelledTerm,
-};
-pub use residuals::{Against, Autocorrelation, Line, Nis, Residuals};
-#[cfg(feature = "schema")]
-pub use schema::schema;
 
 /// Version of the JSON contract of a diagnosis; it rises when a key changes its meaning or goes
 /// away.
-pub const SCHEMA_VERSION: u32 = 2;
+pub const SCHEMA_VERSION: u32 = 3;
 
-/// The answer of a diagnosis. What does not apply, or what a record is too short for, is `None`.
+/// The answer of a diagnosis. What does not apply, or what a record is too short for, is `None` or empty.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct DiagnosisResult {
+pub struct Answer {
     /// Version of this contract.
     pub schema_version: u32,
     /// Program, inputs and command that made the result: record and bench file first, then the
@@ -68,10 +29,8 @@ pub struct DiagnosisResult {
     /// on which each record follows the one before.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub records: Vec<RecordResult>,
-    /// Whether coefficients and effects are those of gyros and accelerometers that are fixed to a body, in
-    /// their own axes: of a platform that was computed from a strapdown unit.
-    #[serde(default, skip_serializing_if = "is_false")]
-    pub strapdown: bool,
+    /// What the coefficients and the effects are of.
+    pub subject: Subject,
     /// Size of the later record, if one was given.
     pub later_record: Option<RecordSummary>,
     /// The answer in one word.
@@ -79,8 +38,8 @@ pub struct DiagnosisResult {
     /// Family-wise probability of any finding on a record of the nominal model with the declared
     /// noise.
     pub false_alarm_probability: f64,
-    /// Part of it that each test may spend.
-    pub false_alarm_shares: FalseAlarmShares,
+    /// Part of it that each test may spend; `None` of a plant, of which the search is the only test.
+    pub false_alarm_shares: Option<FalseAlarmShares>,
     /// Gross errors of the set-up. One that stops the diagnosis makes the verdict `setup`.
     pub setup: Vec<SetupProblem>,
     /// Test of the magnitude of specific force, which no gyro and no attitude enters; it makes no
@@ -90,25 +49,34 @@ pub struct DiagnosisResult {
     pub residuals: Option<Residuals>,
     /// Detected effects: noise first, then causes in falling strength, then the filter.
     pub findings: Vec<Finding>,
-    /// The drift coefficients with and without the accepted effects; `None` without a fit.
+    /// The coefficients with and without the accepted effects: of a plant its parameters, and the initial
+    /// states of a record that is alone; `None` without a fit.
     pub coefficients: Option<Coefficients>,
+    /// Errors of simulations of a plant's outputs.
+    pub open_loop: Vec<OutputError>,
+    /// Time over which these go on \[s\]; `None` of a platform.
+    pub horizon_s: Option<f64>,
     /// Gain of the extended model over the nominal one; `None` without a cause.
     pub gain: Option<Gain>,
     /// Test of the residuals with all causes in the model.
     pub remainder: ResidualTest,
-    /// Groups of effects that this record does not distinguish.
-    pub cannot_tell: Vec<Indistinguishable>,
+    /// Set-ups that fit as well as the declared one; `None` if there are none.
+    pub set_ups: Option<SetUps>,
+    /// Inputs of a plant that never move.
+    pub still_inputs: Vec<String>,
+    /// Directions that the record does not determine.
+    pub undetermined: Vec<NullDirection>,
+    /// Starts of the fit of a plant; `None` of a platform.
+    pub starts: Option<Starts>,
     /// All hypotheses of the first search, largest statistic first.
     pub ranking: Vec<RankedEffect>,
     /// Detection threshold of the largest statistic of `ranking`; `None` if nothing was searched.
     pub threshold: Option<f64>,
     /// Power of the search for each effect of `ranking` at its typical size.
     pub power: Vec<Power>,
-    /// Maximum-likelihood noise over the declared noise, with all causes in the model; `None`
-    /// without a fit.
-    pub noise: Option<NoiseReport>,
-    /// Noise of the model that the coefficients are of; `None` without a fit.
-    #[serde(default)]
+    /// Maximum-likelihood noise over the declared noise, with all causes in the model; none without a fit.
+    pub noise: Vec<NoiseLevel>,
+    /// Noise of the model that the coefficients are of; `None` without a fit, and of a plant.
     pub model_noise: Option<ModelNoise>,
     /// Noise audit of the accelerometers; `None` without a fit.
     pub noise_audit: Option<NoiseAuditSummary>,
@@ -119,22 +87,49 @@ pub struct DiagnosisResult {
     pub not_searched: Vec<NotTested>,
     /// Whether the search ended by itself, and not at its budget of work: then there may be more in the
     /// record than the findings, and effects that they were not compared with.
-    #[serde(default = "is_complete")]
     pub search_complete: bool,
     /// Consistency test of another filter, if one was asked for.
     pub filter: Option<FilterTest>,
+    /// What runs that could be made next would tell, the one that tells most first.
+    pub next_runs: Vec<NextRun>,
 }
 
-fn is_false(value: &bool) -> bool {
-    !*value
+/// One of several records that were diagnosed together.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct RecordResult {
+    /// Its name: that of its file.
+    pub name: String,
+    /// Size of the record.
+    pub record: RecordSummary,
+    /// Offsets of the constant drifts of its turn-on from those of the mean turn-on \[deg/h\], by axis;
+    /// `None` where the bench files do not declare that turn-ons differ.
+    pub turn_on_deg_per_h: Option<[Estimated; 3]>,
+    /// Its initial states, of a plant.
+    pub initial: Option<Coefficients>,
+    /// Errors of simulations of its outputs with the models of all records, of a plant.
+    pub open_loop: Vec<OutputError>,
+    /// The answer of this record alone; `None` if it determines too little for one.
+    pub alone: Option<Answer>,
+    /// Why it has none; empty if it has.
+    pub why_not_alone: String,
 }
 
-/// Searches of earlier versions had no budget.
-fn is_complete() -> bool {
-    true
+/// What an answer is of.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum Subject {
+    /// An inertially stabilised platform.
+    Platform,
+    /// A platform that was computed from a strapdown unit: coefficients and effects are those of instruments
+    /// that are fixed to a body, in their own axes.
+    Strapdown,
+    /// A plant of this name.
+    Plant(String),
 }
 
-impl DiagnosisResult {
+impl Answer {
     /// Findings of one kind.
     pub fn of_kind(&self, kind: FindingKind) -> impl Iterator<Item = &Finding> {
         let findings = self.findings.iter();
@@ -161,11 +156,40 @@ impl DiagnosisResult {
         self.of_kind(FindingKind::Cause)
     }
 
+    /// Whether it is of a strapdown unit.
+    #[must_use]
+    pub fn is_strapdown(&self) -> bool {
+        self.subject == Subject::Strapdown
+    }
+
+    /// Whether something is found that the model lacks, in the catalogue or outside of it.
+    #[must_use]
+    pub fn has_findings(&self) -> bool {
+        !(self.findings.is_empty() && self.remainder.unmodelled.is_empty())
+    }
+
+    /// The verdict that findings, residual test and search lead to. Names are settled only if the search ended by
+    /// itself, and if what they leave is white.
+    #[must_use]
+    pub fn judged(
+        findings: &[Finding],
+        remainder: &ResidualTest,
+        search_complete: bool,
+    ) -> Verdict {
+        let is_unexplained = remainder.verdict == ResidualVerdict::Unexplained;
+        match (findings.is_empty(), is_unexplained, search_complete) {
+            (_, _, false) | (false, true, true) => Verdict::NotSettled,
+            (true, true, true) => Verdict::Unexplained,
+            (false, false, true) => Verdict::EffectsFound,
+            (true, false, true) => Verdict::Clean,
+        }
+    }
+
     /// Files of the axes of the instruments, one for each record, if it is of a strapdown unit. That of a later
     /// record may follow, and other inputs.
     #[must_use]
     pub fn axes_inputs(&self) -> &[Input] {
-        if !self.strapdown {
+        if !self.is_strapdown() {
             return &[];
         }
         // They follow the pairs of record and bench, of which a later record is the last.
@@ -180,35 +204,21 @@ impl DiagnosisResult {
     }
 }
 
-impl Finding {
-    /// The parameter of a name.
-    #[must_use]
-    pub fn parameter(&self, name: &str) -> Option<&Parameter> {
-        self.parameters
-            .iter()
-            .find(|parameter| parameter.name == name)
-    }
-
-    /// Ids of its confidence set, the named effect first.
-    pub fn set(&self) -> impl Iterator<Item = &str> {
-        let others = self.alternatives.iter().map(|other| &*other.effect);
-        core::iter::once(&*self.effect).chain(others)
-    }
-}
-
 /// A diagnosis in one word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
-#[non_exhaustive]
 pub enum Verdict {
     /// No model mismatch was detected.
     Clean,
-    /// At least one effect was detected; effects of noise and filter count.
+    /// At least one effect was detected, effects of noise and filter among them, and nothing contradicts the
+    /// model with it.
     EffectsFound,
-    /// The residuals are not white, and no effect of the catalogue explains them; or the search ended at its
-    /// budget with nothing named (`search_complete` is false).
+    /// The residuals are not white, and no effect of the catalogue explains them.
     Unexplained,
+    /// Names are not settled: the search ended at its budget of work, or what the named effects leave is not
+    /// white.
+    NotSettled,
     /// A gross error of the set-up stopped the diagnosis.
     Setup,
 }
@@ -224,7 +234,6 @@ pub struct FalseAlarmShares {
     /// Search over the effects of the catalogue.
     pub search: f64,
     /// Random walks of the gyros.
-    #[serde(default)]
     pub random_walk: f64,
     /// Test of the residuals, and search for terms that the catalogue does not hold.
     pub residual_test: f64,

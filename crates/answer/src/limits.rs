@@ -1,73 +1,55 @@
-//! Limits of an answer: effects that are indistinguishable, undetectable or untested.
+//! Limits of an answer: what the record does not determine, show or tell apart.
 
 use serde::{Deserialize, Serialize};
 
-/// A group of effects, or of set-ups, that the record does not distinguish.
+use crate::Experiment;
+
+/// Set-ups that fit a record alike.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Indistinguishable {
-    /// Their ids, the reported one first; of set-ups their names, the declared one first.
+pub struct SetUps {
+    /// Their names, the declared one first.
     pub members: Vec<String>,
-    /// Their relation.
-    pub relation: Relation,
-    /// The relation in words.
+    /// Why they fit alike.
     pub why: String,
-    /// Members that were not tested and that `--effects` can add to the search.
-    pub testable: Vec<String>,
-    /// Experiments that would distinguish them.
+    /// Experiments that would tell them apart.
     pub experiments: Vec<Experiment>,
     /// The experiments in words.
     pub would_separate: String,
 }
 
-/// Relation of effects that a record does not distinguish.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+/// A direction that a record does not determine.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(rename_all = "kebab-case")]
-#[non_exhaustive]
-pub enum Relation {
-    /// Exact equivalents: the same samples at any attitude and for ever.
-    ExactEquivalents,
-    /// Members of one confidence set.
-    ConfidenceSet,
-    /// Near twins that were not tested.
-    NearTwins,
-    /// Set-ups that fit every record alike; the members are no effects.
-    SetUps,
+pub struct NullDirection {
+    /// Whether no record determines it; this record does not otherwise.
+    pub is_gauge: bool,
+    /// Names with their changes: a share of a value that is not zero, in the unit otherwise.
+    pub parts: Vec<NullPart>,
+    /// The parameter that was held for it.
+    pub held: Option<String>,
 }
 
-/// An experiment that distinguishes effects.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+/// One name of a direction.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Experiment {
-    /// The kind of experiment.
-    pub kind: ExperimentKind,
-    /// Quantity to control, change or measure, or what to do; `None` where the kind says it all.
-    pub what: Option<String>,
+pub struct NullPart {
+    /// Parameter or initial state.
+    pub name: String,
+    /// Its change along the direction, the largest being one.
+    pub change: f64,
+    /// Whether the change is a share of its value.
+    pub is_share: bool,
 }
 
-/// Kind of an experiment.
+/// How the best fit was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(rename_all = "kebab-case")]
-#[non_exhaustive]
-pub enum ExperimentKind {
-    /// A second run from another initial attitude.
-    OtherAttitude,
-    /// A second run from another initial attitude, or started at another time of day.
-    OtherStart,
-    /// An independent measurement of the attitude at the first row.
-    MeasureAttitude,
-    /// A run with a logged quantity held or stepped on purpose.
-    ControlRegressor,
-    /// A run with an input changed on purpose.
-    ChangeInput,
-    /// An independent measurement of something of the site.
-    MeasureInput,
-    /// A run that starts long after switching on.
-    StartLate,
-    /// An experiment in words.
-    Other,
+pub struct Starts {
+    /// Starts that were tried.
+    pub tried: usize,
+    /// Starts that ended at the best fit.
+    pub agreeing: usize,
 }
 
 /// One hypothesis of the first search.
@@ -115,7 +97,6 @@ pub struct NotTested {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
-#[non_exhaustive]
 pub enum NotTestedReason {
     /// It was tested, but the record is too short to show it at its typical size.
     LowPower,

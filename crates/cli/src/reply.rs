@@ -10,7 +10,7 @@ use crate::terminal;
 
 /// Result of a command.
 #[derive(Debug, Default)]
-pub(crate) struct Answer {
+pub(crate) struct Reply {
     /// What a person reads first; `None` of a command whose answer is its text.
     pub(crate) screen: Option<Screen>,
     /// The details, or the whole answer without a screen.
@@ -21,7 +21,7 @@ pub(crate) struct Answer {
     pub(crate) exit_code: u8,
 }
 
-impl From<String> for Answer {
+impl From<String> for Reply {
     fn from(text: String) -> Self {
         Self {
             text,
@@ -30,7 +30,7 @@ impl From<String> for Answer {
     }
 }
 
-impl Answer {
+impl Reply {
     /// An answer with a first screen.
     pub(crate) fn of(screen: Screen, text: String) -> Self {
         Self {

@@ -21,7 +21,6 @@ pub struct AllanTest {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
-#[non_exhaustive]
 pub enum AllanCourse {
     /// It falls as white noise of the estimated level does.
     White,

@@ -5,7 +5,7 @@ use std::path::Path;
 use gyrocal_record::{Error, InputErrorKind, SourceText};
 use serde::Deserialize;
 
-use super::{DiagnosisResult, SCHEMA_VERSION};
+use crate::{Answer, SCHEMA_VERSION, Subject};
 
 /// The key that results of any version have.
 #[derive(Deserialize)]
@@ -19,7 +19,7 @@ struct Versioned {
 /// As [`read_text`], and [`Error::Unreadable`] if there is no such file.
 // Both inline: the code of the deserialisation, a third of this package's, is made where it is used.
 #[inline]
-pub fn read(path: &Path) -> Result<DiagnosisResult, Error> {
+pub fn read(path: &Path) -> Result<Answer, Error> {
     read_text(&SourceText::read(path)?)
 }
 
@@ -29,7 +29,7 @@ pub fn read(path: &Path) -> Result<DiagnosisResult, Error> {
 /// # Errors
 /// [`Error::Input`] with line and column if the text is no result of this version.
 #[inline]
-pub fn read_text(source: &SourceText) -> Result<DiagnosisResult, Error> {
+pub fn read_text(source: &SourceText) -> Result<Answer, Error> {
     let text = source.text();
     let versioned: Versioned =
         serde_json::from_str(text).map_err(|error| no_diagnosis(source, &error))?;
@@ -44,6 +44,35 @@ pub fn read_text(source: &SourceText) -> Result<DiagnosisResult, Error> {
         ));
     }
     serde_json::from_str(text).map_err(|error| no_diagnosis(source, &error))
+}
+
+/// Reads the answer of a platform or of a strapdown unit, that `gyrocal diagnose --json` wrote.
+///
+/// # Errors
+/// As [`read`], and [`Error::Input`] if the answer is of a plant.
+#[inline]
+pub fn read_platform(path: &Path) -> Result<Answer, Error> {
+    read_platform_text(&SourceText::read(path)?)
+}
+
+/// The same from a text.
+///
+/// # Errors
+/// As [`read_text`], and [`Error::Input`] if the answer is of a plant.
+#[inline]
+pub fn read_platform_text(source: &SourceText) -> Result<Answer, Error> {
+    let answer = read_text(source)?;
+    let Subject::Plant(name) = &answer.subject else {
+        return Ok(answer);
+    };
+    let place = source.text().find("\"subject\"").unwrap_or(0);
+    Err(source.error(
+        InputErrorKind::OutOfRange,
+        place..place,
+        format!("an answer on the plant `{name}`"),
+        "an answer on a platform or a strapdown unit",
+        "give a result of `gyrocal diagnose`; `gyrocal plant extend` takes this one",
+    ))
 }
 
 fn no_diagnosis(source: &SourceText, error: &serde_json::Error) -> Error {

@@ -1,0 +1,109 @@
+//! Answers as files: each is written, held against its schema, read back, and given to what takes one; and none calls
+//! settled what is not.
+
+use gyrocal_answer::{Answer, Subject, Verdict, read_text, write_text};
+use gyrocal_diagnosis::prose::first_screen;
+use gyrocal_fleet::{FleetRecord, RecordName};
+use gyrocal_pages::of_result;
+use gyrocal_record::SourceText;
+use gyrocal_testkit::contracts::{schema_of, violations};
+use gyrocal_testkit::run;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use crate::before::gyrocal;
+use crate::error::Error;
+
+/// What is wrong with an answer as a file, and whether it has names that are not settled.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Checked {
+    /// Refusals and differences.
+    pub(crate) faults: Vec<String>,
+    /// Whether its search was cut, or what its names leave is not white.
+    pub(crate) is_open: bool,
+    /// Places that call it settled all the same.
+    pub(crate) settled: Vec<String>,
+}
+
+impl Checked {
+    pub(crate) fn of(answer: &Answer) -> Result<Self, Error> {
+        let is_open = answer.verdict != Verdict::Setup
+            && (!answer.search_complete || !answer.findings.is_empty() && answer.is_unexplained());
+        let mut checked = Self {
+            faults: Vec::new(),
+            is_open,
+            settled: Vec::new(),
+        };
+        match write_text(answer) {
+            Ok(text) => checked.faults = faults(answer, &text)?,
+            Err(error) => checked.faults.push(error.to_string()),
+        }
+        if is_open {
+            checked.settled = settled(answer);
+        }
+        Ok(checked)
+    }
+}
+
+/// What does not take the text of an answer.
+fn faults(answer: &Answer, text: &str) -> Result<Vec<String>, Error> {
+    let mut faults = Vec::new();
+    let schema = schema_of("diagnose").unwrap_or_default();
+    let found = violations(&schema, text);
+    if !found.is_empty() {
+        faults.push(format!("schema: {found}"));
+    }
+    match read_text(&SourceText::new(text, "answer.json")?) {
+        // Not the answer itself: the last bit of a number below 1e-308 may be another one.
+        Ok(read) if serde_json::to_value(&read)? == serde_json::from_str::<Value>(text)? => (),
+        Ok(_) => faults.push("reads back as another answer".to_owned()),
+        Err(error) => faults.push(format!("read back: {error}")),
+    }
+    let folder = tempfile::tempdir()?;
+    std::fs::write(folder.path().join("answer.json"), text)?;
+    let mut refused = |arguments: &[&str], may_say: &str| -> Result<(), Error> {
+        let outcome = run(gyrocal(folder.path())?.args(arguments));
+        let said = outcome
+            .stderr
+            .split_whitespace()
+            .collect::<Vec<_>>()
+            .join(" ");
+        if outcome.code != Some(0) && (may_say.is_empty() || !said.contains(may_say)) {
+            faults.push(format!("{}: {said}", arguments.join(" ")));
+        }
+        Ok(())
+    };
+    refused(&["report", "answer.json", "--out", "page.html"], "")?;
+    if matches!(answer.subject, Subject::Plant(_)) {
+        let line = ["extend", "answer.json", "--out", "e.model.toml"];
+        refused(&line, "an answer on the plant")?;
+    } else {
+        let line = ["extend", "answer.json", "--out", "e.model.toml"];
+        refused(&line, "expected an effect of the extended model")?;
+        let name = RecordName::default();
+        if let Err(error) = FleetRecord::read(name, text, None) {
+            faults.push(format!("fleet: {error}"));
+        }
+    }
+    Ok(faults)
+}
+
+/// Places that call an answer settled.
+fn settled(answer: &Answer) -> Vec<String> {
+    let mut places = Vec::new();
+    if answer.verdict != Verdict::NotSettled {
+        places.push("verdict".to_owned());
+    }
+    let words = match answer.subject {
+        Subject::Plant(_) => gyrocal_plant::sentences::verdict(answer),
+        _ => first_screen(answer).verdict,
+    };
+    if !words.to_lowercase().contains("not settled") {
+        places.push(format!("first screen: {words}"));
+    }
+    let headline = of_result(answer).summary.headline;
+    if !headline.to_lowercase().contains("not settled") {
+        places.push(format!("page: {headline}"));
+    }
+    places
+}
