@@ -162,6 +162,13 @@ impl Answer {
         self.subject == Subject::Strapdown
     }
 
+    /// Whether the search came to its end, and what the named effects leave is white: names and what is excluded
+    /// hold only then.
+    #[must_use]
+    pub fn is_settled(&self) -> bool {
+        self.verdict != Verdict::NotSettled
+    }
+
     /// Whether something is found that the model lacks, in the catalogue or outside of it.
     #[must_use]
     pub fn has_findings(&self) -> bool {

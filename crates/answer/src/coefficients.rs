@@ -1,8 +1,8 @@
-//! The drift coefficients of the nominal and of the extended model.
+//! The coefficients of the nominal and of the extended model: of drifts, or parameters of a plant.
 
 use serde::{Deserialize, Serialize};
 
-/// The drift coefficients with and without the accepted effects.
+/// The coefficients with and without the accepted effects.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Coefficients {

@@ -23,7 +23,7 @@ pub struct Finding {
     pub p_value: Option<f64>,
     /// Coverage of the confidence set: share of sets that held the cause, as measured of causes of that kind
     /// (of a set with several kinds the least). `None` where it was not measured: of findings below seven
-    /// sigma, of noise, of random walks and of a filter.
+    /// sigma, of noise, of random walks, of a filter and of a plant.
     pub coverage: Option<f64>,
     /// All effects that it may also be: its exact equivalents, the other members of the confidence set, nearest
     /// first, and effects that look like it in this record and were not searched.
@@ -47,10 +47,11 @@ pub struct Finding {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub formula: Option<String>,
     /// Gain in the log score of cross-validation with the effect in the model, given the other
-    /// causes \[nats\]; `None` of noise and of a filter, and where it was not judged: of one of many causes
-    /// of a record that takes too much work.
+    /// causes \[nats\]; `None` of noise and of a filter, and where it was not judged: of a plant, and of one of
+    /// many causes of a record that takes too much work.
     pub gain_nats: Option<f64>,
-    /// Whether it is in the extended model: whether that gain is positive. `None` as above.
+    /// Whether it is in the extended model: whether that gain is positive, or was not judged. `None` of noise and of a
+    /// filter.
     pub accepted: Option<bool>,
 }
 

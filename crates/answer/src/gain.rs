@@ -59,15 +59,8 @@ pub struct CoefficientShift {
     pub coefficient: String,
     /// Extended less nominal estimate, in `unit`.
     pub shift: f64,
-    /// Standard deviation of the shift, in `unit`: the root of the difference of the two variances
-    /// (Hausman 1978).
-    pub sigma: f64,
-    /// 95 % interval of the shift.
-    pub interval: [f64; 2],
-    /// The shift over the standard deviation that the nominal fit claimed.
+    /// The shift over the standard deviation of the nominal estimate.
     pub in_sigmas: f64,
-    /// 95 % interval of that.
-    pub in_sigmas_interval: [f64; 2],
     /// The unit.
     pub unit: String,
 }

@@ -76,10 +76,13 @@ pub(crate) fn run(arguments: &ExtendArguments) -> Result<Reply, Failure> {
             ("--json", arguments.json.as_deref()),
         ],
     )?;
+    let mut is_settled = true;
     let extension = match &arguments.diagnosis {
         Some(path) => {
             let name = printable_path(path);
-            let diagnosis = with_members(read_platform(path)?, &arguments.member, &name);
+            let diagnosis = read_platform(path)?;
+            is_settled = diagnosis.is_settled();
+            let diagnosis = with_members(diagnosis, &arguments.member, &name);
             diagnosis.and_then(|diagnosis| of_diagnosis(&diagnosis, &name))
         }
         None => of_list(
@@ -95,7 +98,14 @@ pub(crate) fn run(arguments: &ExtendArguments) -> Result<Reply, Failure> {
         outputs.stage_json(path, &report(&extension, &inputs)?)?;
     }
     outputs.commit()?;
-    Ok(summary(arguments, &extension))
+    let mut shown = summary(arguments, &extension);
+    if let Some(screen) = shown.screen.as_mut().filter(|_| !is_settled) {
+        screen.fact(
+            "not settled",
+            "the diagnosis did not settle these names: other effects may be the cause",
+        );
+    }
+    Ok(shown)
 }
 
 fn report(extension: &Extension, inputs: &[&Path]) -> Result<ExtensionReport, Failure> {

@@ -9,7 +9,7 @@ mod later_record;
 use gyrocal::generated::platform::DRIFT;
 use gyrocal_calibration::{CalibrationError, FittedPlatform, NoiseModel};
 use gyrocal_record::Record;
-use gyrocal_statistics::{NORMAL_97_5, rms_of_present};
+use gyrocal_statistics::rms_of_present;
 
 pub(crate) use cross_validation::{CrossValidated, KeepDecision, cross_validate};
 pub(crate) use later_record::predict;
@@ -51,38 +51,17 @@ pub(crate) fn gain(
 
 /// Changes of the coefficients from the nominal estimates, over the standard deviations of these.
 fn shifts(nominal: &FittedPlatform<'_>, extended: &FittedPlatform<'_>) -> Vec<CoefficientShift> {
-    let has_walks = !extended.rate_noise().walking().is_empty();
     let each = DRIFT.iter().enumerate();
     each.map(|(index, element)| {
         let shift = extended.values()[index] - nominal.values()[index];
-        let variance = |fit: &FittedPlatform<'_>| fit.covariance()[(index, index)];
-        let (before, after) = (variance(nominal), variance(extended));
-        // Extended = nominal + shift, the two independent (Hausman, Econometrica 46, 1251, 1978). Beside walks
-        // the nominal estimate is no efficient one, and errs by itself.
-        let variance = if has_walks { after } else { after - before };
-        coefficient_shift(element.id, element.unit, shift, (variance.abs(), before))
+        CoefficientShift {
+            coefficient: element.id.to_owned(),
+            shift,
+            in_sigmas: shift / nominal.covariance()[(index, index)].sqrt(),
+            unit: element.unit.to_owned(),
+        }
     })
     .collect()
-}
-
-/// Change of a coefficient; `before` is the variance of its nominal estimate.
-fn coefficient_shift(
-    id: &str,
-    unit: &str,
-    shift: f64,
-    (variance, before): (f64, f64),
-) -> CoefficientShift {
-    let (sigma, claimed) = (variance.sqrt(), before.sqrt());
-    let interval = [-1.0, 1.0].map(|side| shift + side * NORMAL_97_5 * sigma);
-    CoefficientShift {
-        coefficient: id.to_owned(),
-        shift,
-        sigma,
-        interval,
-        in_sigmas: shift / claimed,
-        in_sigmas_interval: interval.map(|end| end / claimed),
-        unit: unit.to_owned(),
-    }
 }
 
 fn rms(record: &Record, noise: &NoiseModel, simulated_g: &[[f64; 3]]) -> f64 {

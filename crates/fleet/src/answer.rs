@@ -17,6 +17,8 @@ pub struct FleetResult {
     pub units: usize,
     /// Number of records that are in the answer.
     pub records: usize,
+    /// Records whose causes are not settled: the search was cut, or what the named effects leave is not white.
+    pub not_settled: usize,
     /// Records that are left out, and why.
     pub problems: Vec<RecordProblem>,
     /// False discovery rate of `recurring`.

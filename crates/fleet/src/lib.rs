@@ -37,6 +37,7 @@
 //!         unit: "deg/h".to_owned(),
 //!     }],
 //!     causes: Vec::new(),
+//!     is_settled: true,
 //!     scores: None,
 //! };
 //! let records: Vec<FleetRecord> = [0.4, 0.5, 0.3, 0.4].into_iter().enumerate().map(record).collect();

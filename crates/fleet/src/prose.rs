@@ -51,10 +51,16 @@ pub fn all(fleet: &FleetResult) -> Vec<Block> {
 pub fn size(fleet: &FleetResult) -> String {
     let units = counted(fleet.units, "unit");
     let records = counted(fleet.records, "record");
-    match fleet.problems.len() {
-        0 => format!("The fleet has {units} with {records}."),
-        left_out => format!("The fleet has {units} with {records}; {left_out} more are left out."),
-    }
+    let left_out = match fleet.problems.len() {
+        0 => String::new(),
+        left_out => format!("; {left_out} more are left out"),
+    };
+    let open = match fleet.not_settled {
+        0 => String::new(),
+        1 => " The diagnosis of one record is not settled.".to_owned(),
+        open => format!(" The diagnoses of {open} records are not settled."),
+    };
+    format!("The fleet has {units} with {records}{left_out}.{open}")
 }
 
 /// The answer in a sentence.

@@ -47,6 +47,8 @@ pub struct FleetRecord {
     pub coefficients: Vec<Coefficient>,
     /// Causes that the record shows by itself.
     pub causes: Vec<String>,
+    /// Whether these are settled: the search came to its end, and left a white rest.
+    pub is_settled: bool,
     /// Scores on all other effects.
     pub scores: Option<ScoreTable>,
 }
@@ -85,6 +87,7 @@ impl FleetRecord {
                 .of_kind(FindingKind::Cause)
                 .map(|finding| finding.effect.clone())
                 .collect(),
+            is_settled: result.is_settled(),
             scores,
         }
     }

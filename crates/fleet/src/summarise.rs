@@ -103,6 +103,7 @@ pub fn summarise(
         manifest: manifest(options.seed),
         units: fleet.names.len(),
         records: records.len(),
+        not_settled: records.iter().filter(|one| !one.is_settled).count(),
         problems,
         false_discovery_rate: options.false_discovery_rate,
         group_probability: options.group_probability,

@@ -89,6 +89,7 @@ fn record(unit: &str, record: &str, estimate: f64) -> FleetRecord {
             unit: "deg/h".to_owned(),
         }],
         causes: vec!["gyro_x.g_y".to_owned()],
+        is_settled: true,
         scores: None,
     }
 }

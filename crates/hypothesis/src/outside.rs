@@ -141,6 +141,10 @@ pub(crate) fn add_none_of_these<F: FittedModel>(
     // Unmodelled terms are such causes, and in the model already.
     let found = unmodelled.iter().map(|found| 0.5 * found.equivalent());
     let ln_rich = found.fold(beside, f64::max);
+    // So short a record has none of the functions: nothing was tried that could speak for such a cause.
+    if ln_rich == f64::NEG_INFINITY {
+        return Ok(());
+    }
     for effect in effects {
         effect.finding.none_of_these = Some(over(ln_rich, effect.ln_others));
     }

@@ -20,6 +20,8 @@ pub struct Ranked {
     /// Effects with their statistics, the largest first.
     statistics: Vec<(String, f64)>,
     causes: Vec<Cause>,
+    /// Whether what is not among them is excluded.
+    is_settled: bool,
 }
 
 /// A reported effect.
@@ -56,6 +58,7 @@ impl Ranked {
                 .map(|one| (one.effect.clone(), one.statistic))
                 .collect(),
             causes: causes.collect(),
+            is_settled: answer.is_settled(),
         };
         (!ranked.statistics.is_empty()).then_some(ranked)
     }
@@ -82,7 +85,8 @@ impl Ranked {
             shown.extend(cause.alternatives.iter().map(|(id, _)| id.as_str()));
             groups.push(RankingGroup {
                 label: match effects.len() {
-                    1 => format!("{}, no alternatives", cause.effect),
+                    1 if self.is_settled => format!("{}, no alternatives", cause.effect),
+                    1 => cause.effect.clone(),
                     _ => format!("{} and its alternatives", cause.effect),
                 },
                 effects,
@@ -141,7 +145,11 @@ impl Ranked {
             })
             .collect();
         if let Some(last) = groups.last_mut() {
-            "Not reported: excluded, or below the threshold".clone_into(&mut last.label);
+            let words = match self.is_settled {
+                true => "Not reported: excluded, or below the threshold",
+                false => "Not reported",
+            };
+            words.clone_into(&mut last.label);
         }
         Bars {
             title: self.title(|count, first| {

@@ -30,7 +30,7 @@ pub fn facts(answer: &Answer) -> Vec<(&'static str, String)> {
     let has = answer.has_findings();
     let mut all = Vec::new();
     let found = answer.findings.iter();
-    all.extend(found.map(|one| ("effect", finding(one))));
+    all.extend(found.map(|one| ("effect", finding(answer, one))));
     let terms = answer.remainder.unmodelled.iter();
     all.extend(terms.map(|one| ("unexplained", unmodelled(one))));
     let records = answer.records.iter();
@@ -112,9 +112,9 @@ pub fn verdict(answer: &Answer) -> String {
     }
 }
 
-/// An effect with its size, significance and set, a sentence or more.
+/// An effect of an answer with its size, significance and set, a sentence or more.
 #[must_use]
-pub fn finding(found: &Finding) -> String {
+pub fn finding(answer: &Answer, found: &Finding) -> String {
     let mut sizes: Vec<String> = found.parameters.iter().map(parameter).collect();
     sizes.extend(found.in_record.map(|record| format!("in record {record}")));
     let mut text = format!(
@@ -129,21 +129,25 @@ pub fn finding(found: &Finding) -> String {
     let rivals: Vec<String> = rivals
         .map(|other| format!("{} ({})", other.effect, likelihood(other)))
         .collect();
-    if rivals.is_empty() {
-        text += " Its set has no other effect.";
-    } else {
-        text += &format!(" The cause may also be {}.", rivals.join(", "));
-    }
+    text += &match (rivals.is_empty(), answer.is_settled()) {
+        (true, true) => " Its set has no other effect.".to_owned(),
+        (true, false) => " No other effect of what was compared is in its set.".to_owned(),
+        (false, _) => format!(" The cause may also be {}.", rivals.join(", ")),
+    };
     let equivalents: Vec<&str> = found.equivalents().collect();
     if !equivalents.is_empty() {
         text += &format!(" No record tells it from {}.", equivalents.join(", "));
     }
-    if let Some(none) = found.none_of_these.filter(|none| *none > LEAST_NONE) {
-        text += &format!(
+    text += &match found.none_of_these {
+        Some(none) if none > LEAST_NONE => format!(
             " With a probability of {} % the cause is outside of the catalogue.",
             significant(100.0 * none, 2)
-        );
-    }
+        ),
+        Some(_) => String::new(),
+        None => {
+            " The probability of a cause outside of the catalogue was not estimated.".to_owned()
+        }
+    };
     text
 }
 

@@ -79,16 +79,20 @@ fn listed(ids: &[&str]) -> Option<String> {
 
 /// Record and verdict, below every title.
 fn subtitle(found: &DiagnosisRun<'_>) -> String {
-    let verdict = match found.diagnosis.result.verdict {
+    let result = &found.diagnosis.result;
+    let verdict = match result.verdict {
         Verdict::EffectsFound | Verdict::NotSettled => {
             // The pictures are of the record and not of another filter.
-            let findings = found.diagnosis.result.findings.iter();
+            let findings = result.findings.iter();
             let findings = findings.filter(|finding| finding.kind != FindingKind::Filter);
             let ids: Vec<&str> = findings.map(|finding| &*finding.effect).collect();
-            if ids.is_empty() {
-                "no effects found".to_owned()
-            } else {
-                format!("effects found: {}", ids.join(", "))
+            let found = match ids.is_empty() {
+                true => "no effects found".to_owned(),
+                false => format!("effects found: {}", ids.join(", ")),
+            };
+            match result.is_settled() {
+                true => found,
+                false => format!("not settled, {found}"),
             }
         }
         Verdict::Unexplained => "unexplained residual".to_owned(),

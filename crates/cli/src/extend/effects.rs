@@ -3,7 +3,7 @@
 use gyrocal::effect::{Enters, Role};
 use gyrocal::generated::catalogue::{PARAMETERS, SHAPES};
 use gyrocal::{EFFECTS, Effect};
-use gyrocal_answer::{Answer, Finding, Verdict};
+use gyrocal_answer::{AlternativeKind, Answer, Finding, Verdict};
 use gyrocal_record::{
     Gyros, KnownEffect, ModelFile, ParameterEstimate, Standing, any_of, nearest_names,
 };
@@ -53,6 +53,7 @@ pub(super) fn with_members(
     for member in members {
         let others = |finding: &Finding| -> Vec<String> {
             let all = finding.alternatives.iter();
+            let all = all.filter(|one| one.kind != AlternativeKind::NotSearched);
             all.map(|one| one.effect.clone()).collect()
         };
         let mut findings = diagnosis.findings.iter();

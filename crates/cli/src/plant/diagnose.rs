@@ -182,7 +182,8 @@ fn checked_inputs<'a>(
 fn screen(answer: &Answer) -> Screen {
     let (standing, verdict) = match answer.verdict {
         Verdict::Clean => (Standing::Good, "NOTHING FOUND"),
-        Verdict::NotSettled => (Standing::Doubtful, "NOT SETTLED"),
+        Verdict::NotSettled => (Standing::Bad, "NOT SETTLED"),
+        Verdict::Unexplained => (Standing::Bad, "UNEXPLAINED"),
         _ => (Standing::Bad, "MODEL LACKS SOMETHING"),
     };
     let mut screen = Screen::new(standing, verdict, sentences::verdict(answer));

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use gyrocal_answer::{Answer, Subject, read_text};
 use gyrocal_diagnosis::prose::{Screen, Standing};
-use gyrocal_plant::{Extension, LoadedPlant};
+use gyrocal_plant::{Extension, LoadedPlant, sentences};
 use gyrocal_plant_codegen::{derive, settings_of_a_command};
 use gyrocal_record::{Error, InputErrorKind, Outputs, SourceText, printable_path};
 
@@ -42,7 +42,7 @@ pub(super) fn run(arguments: &ExtendArguments) -> Result<Reply, Failure> {
     let mut outputs = Outputs::new();
     outputs.stage(&arguments.script, extended.as_bytes())?;
     outputs.commit()?;
-    Ok(shown(arguments, &extension))
+    Ok(shown(arguments, &answer, &extension))
 }
 
 /// Refuses the answer of anything but the plant of this name.
@@ -63,7 +63,7 @@ fn refuse_another(source: &SourceText, answer: &Answer, plant: &str) -> Result<(
     ))
 }
 
-fn shown(arguments: &ExtendArguments, extension: &Extension) -> Reply {
+fn shown(arguments: &ExtendArguments, answer: &Answer, extension: &Extension) -> Reply {
     let names: Vec<&str> = extension
         .terms
         .iter()
@@ -79,6 +79,9 @@ fn shown(arguments: &ExtendArguments, extension: &Extension) -> Reply {
         names => format!("The plant has the terms {}.", names.join(", ")),
     };
     let mut screen = Screen::new(standing, verdict, headline);
+    if !answer.is_settled() {
+        screen.fact("not settled", sentences::verdict(answer));
+    }
     for (effect, why) in &extension.left_out {
         screen.fact("left out", format!("{effect} {why}"));
     }

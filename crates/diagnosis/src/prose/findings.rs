@@ -5,7 +5,7 @@ use gyrocal_statistics::format::{percent, short as rounded};
 use super::Block;
 use super::format::{short, tested, with_sigma};
 use super::records;
-use gyrocal_answer::{Alternative, AlternativeKind, Answer, Finding, Parameter};
+use gyrocal_answer::{Alternative, AlternativeKind, Answer, Finding, FindingKind, Parameter};
 
 /// Alternatives that an entry names; the ranking shows all of them.
 const ALTERNATIVES_SHOWN: usize = 4;
@@ -70,7 +70,10 @@ fn alternatives(finding: &Finding) -> Option<String> {
 
 /// The probability that the cause is not in the catalogue, and how much likelier it is than what is named.
 fn none_of_these(finding: &Finding) -> Option<String> {
-    let probability = finding.none_of_these?;
+    let Some(probability) = finding.none_of_these else {
+        let words = "None of these: probability not estimated.";
+        return (finding.kind == FindingKind::Cause).then(|| words.to_owned());
+    };
     let followed = "the residuals follow the specific force, its past, its products with time or the \
                     temperature as no effect of the catalogue does";
     let likelier = if probability > 0.5 {

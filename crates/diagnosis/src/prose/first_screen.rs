@@ -162,9 +162,12 @@ pub fn may_also_be(result: &Answer) -> String {
         add(alternative.effect.as_str());
     }
     let told = result.causes().filter_map(|finding| finding.none_of_these);
+    let is_untold = result
+        .causes()
+        .any(|finding| finding.none_of_these.is_none());
     let unlisted = match told.reduce(f64::max) {
         Some(most) if most >= TOLD => Some(likely(most)),
-        None if result.verdict == Verdict::NotSettled => Some("not estimated".to_owned()),
+        _ if is_untold && !result.is_settled() => Some("not estimated".to_owned()),
         _ => None,
     };
     let unlisted = unlisted
@@ -179,10 +182,13 @@ pub fn may_also_be(result: &Answer) -> String {
     }
 }
 
-/// What sets without a second member say: their coverage, where it was measured and the search was complete.
+/// What sets without a second member say: their coverage, where it was measured and names are settled.
 fn nothing_else(result: &Answer) -> String {
     if !result.search_complete {
         return "nothing else that the search came to compare".to_owned();
+    }
+    if !result.is_settled() {
+        return "nothing else that was compared; what is left is not white".to_owned();
     }
     let coverages = result.causes().map(|finding| finding.coverage);
     let least = coverages.reduce(|least, own| Some(least?.min(own?)));

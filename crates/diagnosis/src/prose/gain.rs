@@ -60,14 +60,8 @@ fn on_the_record(result: &Answer, gain: &Gain) -> String {
 }
 
 fn shifted(shift: &CoefficientShift) -> String {
-    let [low, high] = shift.in_sigmas_interval;
-    let [low, high] = if shift.in_sigmas < 0.0 {
-        [-high, -low]
-    } else {
-        [low, high]
-    };
     format!(
-        "{} {:+.2e} {} ({:.1} sigma, {low:.1} to {high:.1})",
+        "{} {:+.2e} {} ({:.1} sigma)",
         shift.coefficient,
         shift.shift,
         shift.unit,

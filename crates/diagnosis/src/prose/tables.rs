@@ -230,28 +230,22 @@ fn role(result: &Answer, effect: &str) -> String {
 
 fn shifts(gain: &Gain) -> Table {
     let rows = gain.coefficient_shift.iter().map(|shift| {
-        let [low, high] = shift.interval;
-        let [low_sigmas, high_sigmas] = shift.in_sigmas_interval;
         vec![
             shift.coefficient.clone(),
             format!("{:+.2e}", shift.shift),
-            format!("{low:+.2e} to {high:+.2e}"),
             format!("{:+.1}", shift.in_sigmas),
-            format!("{low_sigmas:+.1} to {high_sigmas:+.1}"),
             shift.unit.clone(),
         ]
     });
     Table {
         title: format!(
-            "Coefficient changes with {} in the model (95 % CI):",
+            "Coefficient changes with {} in the model:",
             gain.effects.join(", ")
         ),
         columns: vec![
             Column::words("coefficient"),
             Column::numbers("change"),
-            Column::numbers("interval"),
             Column::numbers("in sigmas"),
-            Column::numbers("interval"),
             Column::words("unit"),
         ],
         rows: rows.collect(),

@@ -177,14 +177,10 @@ fn a_shift_is_that_of_its_own_row() {
     assert_eq!(gain.coefficient_shift.len(), all.nominal.len());
     for ((nominal, extended), shift) in rows.zip(&gain.coefficient_shift) {
         assert_eq!(shift.coefficient, nominal.name);
-        // The same operations on the same numbers, but for the root of a square.
+        // The same operations on the same numbers.
         let close = |one: f64, other: f64| (one - other).abs() < 1e-9 * (1e-9 + other.abs());
         let own = extended.estimate - nominal.estimate;
         assert!(close(shift.shift, own), "{shift:?}");
         assert!(close(shift.in_sigmas, own / nominal.sigma), "{shift:?}");
-        let variance = (nominal.sigma.powi(2) - extended.sigma.powi(2)).abs();
-        assert!(close(shift.sigma.powi(2), variance), "{shift:?}");
-        let [low, high] = shift.interval;
-        assert!((high - low - 3.92 * shift.sigma).abs() < 1e-3 * shift.sigma);
     }
 }

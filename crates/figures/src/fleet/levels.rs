@@ -65,6 +65,7 @@ fn record(unit: u64, name: RecordName, coefficients: Vec<Coefficient>) -> FleetR
         name: RecordName { unit, ..name },
         coefficients,
         causes: Vec::new(),
+        is_settled: true,
         scores: None,
     }
 }

@@ -5,7 +5,6 @@ use gyrocal_diagnosis::LaterPrediction;
 use gyrocal_report::page::{
     Cell, Chart, Column, Item, Line, LineKind, Panel, Section, Table, TimeAxis, Tint,
 };
-use gyrocal_statistics::format;
 
 use super::section as titled;
 use crate::panels::line;
@@ -179,14 +178,11 @@ fn figures(gain: &Gain) -> Table {
 
 fn shifts(gain: &Gain) -> Table {
     let rows = gain.coefficient_shift.iter().map(|shift| {
-        let [low, high] = shift.in_sigmas_interval;
-        let [change, sigma] = format::estimate(shift.shift, shift.sigma);
         vec![
             Cell::from(shift.coefficient.clone()),
-            Cell::from(format!("{change} ± {sigma}").replace('-', "−")),
+            Cell::from(format!("{:+.2e}", shift.shift).replace('-', "−")),
             Cell::from(shift.unit.clone()),
             super::summary::change(core::slice::from_ref(shift), &shift.coefficient),
-            Cell::from(format!("{low:+.1} to {high:+.1}").replace('-', "−")),
         ]
     });
     Table {
@@ -196,7 +192,6 @@ fn shifts(gain: &Gain) -> Table {
             column("change", true),
             column("unit", false),
             column("in σ of the nominal fit", true),
-            column("95 % interval, σ", true),
         ],
         rows: rows.collect(),
     }

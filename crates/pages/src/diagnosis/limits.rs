@@ -19,9 +19,13 @@ pub(super) fn cannot_tell(result: &Answer) -> Section {
     });
     let mut items: Vec<Item> = groups.collect();
     if items.is_empty() {
-        items.push(Item::Text(
-            "No reported effect has an alternative in the catalogue.".to_owned(),
-        ));
+        let words = match result.is_settled() {
+            true => "No reported effect has an alternative in the catalogue.",
+            false => {
+                "Names are not settled: alternatives were not compared to the end, or not beside a white rest."
+            }
+        };
+        items.push(Item::Text(words.to_owned()));
     }
     items.extend(undetected(result).map(Item::Table));
     section(

@@ -155,6 +155,7 @@ fn nothing(result: &Answer, columns: usize) -> Card {
             "Cause",
             "None of the catalogue explains the residual".to_owned(),
         ),
+        Verdict::NotSettled => ("Tested", "Not to the end: nothing is named".to_owned()),
         _ => ("Tested", format!("None of {tested} is significant")),
     };
     let description = &result.remainder.description;
@@ -180,10 +181,14 @@ fn alternatives(result: &Answer) -> Card {
         None => {
             title = "What could go undetected";
             main = match result.not_searched.len() {
+                _ if !result.is_settled() => "Not settled".to_owned(),
                 0 => "Nothing of typical size".to_owned(),
                 count => prose::counted(count, "effect"),
             };
             text.push(match result.not_searched.len() {
+                _ if !result.is_settled() => {
+                    "Effects were not compared to the end, or what is left is not white.".to_owned()
+                }
                 0 => "Every effect of the catalogue would show.".to_owned(),
                 _ => {
                     "Not tested, or not visible in this record at typical size: listed under What \
@@ -211,7 +216,7 @@ fn alternatives(result: &Answer) -> Card {
             ));
             if first.alternatives.is_empty() {
                 main = prose::may_also_be(result);
-                if result.search_complete {
+                if result.is_settled() {
                     let sure = first.coverage.map_or_else(String::new, |coverage| {
                         format!(" at {}", format::percent(coverage))
                     });

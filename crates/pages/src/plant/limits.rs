@@ -48,8 +48,16 @@ pub(super) fn cannot_tell(answer: &Answer) -> Section {
         }));
     }
     if items.is_empty() {
-        let all = "The record determines all parameters and initial states, and every effect of the catalogue \
-                   was tested.";
+        let all = match answer.is_settled() {
+            true => {
+                "The record determines all parameters and initial states, and every effect of the catalogue was \
+                 tested."
+            }
+            false => {
+                "The record determines all parameters and initial states. Names are not settled: effects were not \
+                 compared to the end, or not beside a white rest."
+            }
+        };
         items.push(Item::Text(all.to_owned()));
     }
     section(

@@ -31,7 +31,7 @@ pub fn of_plant(diagnosed: &Diagnosed, name: &str, manifest: &Manifest) -> Resul
     sections.extend(ranking::section(Ranked::of(answer).as_ref()));
     sections.extend(tables::parameters(answer));
     sections.extend(tables::records(answer));
-    sections.extend(tables::gain(diagnosed));
+    sections.extend(tables::gain(answer, Some(diagnosed)));
     sections.push(over_time::innovations(diagnosed)?);
     sections.push(limits::cannot_tell(answer));
     Ok(part(answer, name, manifest, sections))
@@ -43,6 +43,7 @@ pub(crate) fn of_answer(answer: &Answer) -> Part {
     sections.extend(ranking::section(Ranked::of(answer).as_ref()));
     sections.extend(tables::parameters(answer));
     sections.extend(tables::records(answer));
+    sections.extend(tables::gain(answer, None));
     sections.push(limits::cannot_tell(answer));
     let name = match answer.records.len() {
         0 => file_name(&answer.manifest, 0, "record"),

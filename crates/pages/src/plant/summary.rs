@@ -71,7 +71,10 @@ fn cause(answer: &Answer) -> Card {
         let tested = counted(answer.ranking.len(), "effect");
         return Card {
             title: "Tested".to_owned(),
-            main: format!("None of {tested} is significant"),
+            main: match answer.is_settled() {
+                true => format!("None of {tested} is significant"),
+                false => "Not to the end: nothing is named".to_owned(),
+            },
             text: unmodelled
                 .map(sentences::unmodelled)
                 .chain(strongest)
@@ -117,6 +120,7 @@ fn alternatives(answer: &Answer) -> Card {
     let Some(first) = answer.findings.first() else {
         "What could go undetected".clone_into(&mut card.title);
         card.main = match answer.not_searched.len() {
+            _ if !answer.is_settled() => "Not settled".to_owned(),
             0 => "Every effect was tested".to_owned(),
             count => counted(count, "effect"),
         };
@@ -139,14 +143,18 @@ fn alternatives(answer: &Answer) -> Card {
         card.text.push(format!("and {more} more"));
     }
     if card.text.is_empty() {
-        "Nothing of the catalogue".clone_into(&mut card.main);
+        let words = match answer.is_settled() {
+            true => "Nothing of the catalogue",
+            false => "Nothing else that was compared",
+        };
+        words.clone_into(&mut card.main);
     }
-    card.text.extend(first.none_of_these.map(|none| {
-        format!(
-            "Outside of the catalogue: probability {} %",
-            format::short(100.0 * none, 2)
-        )
-    }));
+    let probability = match first.none_of_these {
+        Some(none) => format!("{} %", format::short(100.0 * none, 2)),
+        None => "not estimated".to_owned(),
+    };
+    let unlisted = format!("Outside of the catalogue: probability {probability}");
+    card.text.push(unlisted);
     card
 }
 

@@ -33,7 +33,7 @@ pub(super) fn sets(answer: &Answer) -> Option<Section> {
     let mut items: Vec<Item> = answer
         .findings
         .iter()
-        .map(|one| Item::Table(set(one)))
+        .map(|one| Item::Table(set(answer, one)))
         .collect();
     let unmodelled = answer.remainder.unmodelled.iter();
     items.extend(unmodelled.map(|one| Item::Text(sentences::unmodelled(one))));
@@ -45,7 +45,7 @@ pub(super) fn sets(answer: &Answer) -> Option<Section> {
     ))
 }
 
-fn set(found: &Finding) -> Table {
+fn set(answer: &Answer, found: &Finding) -> Table {
     let sizes: Vec<String> = found.parameters.iter().map(sentences::parameter).collect();
     let named = [
         found.effect.clone(),
@@ -67,7 +67,8 @@ fn set(found: &Finding) -> Table {
     let rows = rows.map(|row| row.map(Cell::from).to_vec());
     Table {
         title: match found.alternatives.len() {
-            0 => format!("{}: its set has no other effect", found.effect),
+            0 if answer.is_settled() => format!("{}: its set has no other effect", found.effect),
+            0 => format!("{}: no other effect of what was compared", found.effect),
             count => format!("{} and {count} more in its set", found.effect),
         },
         columns: vec![
@@ -188,9 +189,9 @@ fn error_table(title: String, errors: &[OutputError], has_findings: bool) -> Tab
     }
 }
 
-/// The gain in the record and on a later one; `None` if nothing was found.
-pub(super) fn gain(diagnosed: &Diagnosed) -> Option<Section> {
-    let answer = &diagnosed.answer;
+/// The gain in the record and on a later one, with charts of the later one if its diagnosis is there; `None` if
+/// nothing was found.
+pub(super) fn gain(answer: &Answer, diagnosed: Option<&Diagnosed>) -> Option<Section> {
     if !answer.has_findings() {
         return None;
     }
@@ -206,23 +207,25 @@ pub(super) fn gain(diagnosed: &Diagnosed) -> Option<Section> {
     )];
     let gain = answer.gain.as_ref();
     let later = gain.and_then(|gain| gain.validation.as_ref());
-    match (later, &diagnosed.later) {
-        (Some(later), Some(series)) => {
+    match later {
+        Some(later) => {
             items.extend(sentences::later_record(answer).map(Item::Text));
             let title = format!(
                 "{:+.1} nats of predictive log score in the later record",
                 later.log_score_nats
             );
             let title = title.replace('-', "−");
-            let whole = diagnosed.is_simulated_whole();
-            items.push(Item::Chart(over_time::residual(title, series, whole)));
+            let series = diagnosed.and_then(|own| Some((own, own.later.as_ref()?)));
+            items.extend(series.map(|(own, series)| {
+                Item::Chart(over_time::residual(title, series, own.is_simulated_whole()))
+            }));
             items.push(open_loop(
                 "the later record",
                 later.horizon_s,
                 &later.open_loop,
             ));
         }
-        _ => items.push(Item::Text(
+        None => items.push(Item::Text(
             "No later record was given: --validate LATER.csv measures the gain where nothing was fitted."
                 .to_owned(),
         )),

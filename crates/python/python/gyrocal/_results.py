@@ -431,7 +431,7 @@ class PlantDiagnosis(Result):
 
     def __repr__(self) -> str:
         effects = ", ".join(finding["effect"] for finding in self._fields["findings"])
-        return f"<gyrocal.PlantDiagnosis of {self.plant}: {effects or 'nothing found'}>"
+        return f"<gyrocal.PlantDiagnosis of {self.plant}, {self.verdict}{': ' + effects if effects else ''}>"
 
 
 class Simulation(Result):
