@@ -249,3 +249,55 @@ pub struct FalseAlarmShares {
     /// Allan test, which makes no finding and is not part of the sum.
     pub allan_test: f64,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Finding;
+
+    #[test]
+    fn names_are_settled_by_a_whole_search_and_a_white_rest_alone() {
+        let finding = Finding {
+            effect: "gyro_x.ramp".to_owned(),
+            name: String::new(),
+            kind: FindingKind::Cause,
+            parameters: Vec::new(),
+            z: 9.0,
+            p_value: None,
+            coverage: None,
+            alternatives: Vec::new(),
+            separations: Vec::new(),
+            none_of_these: None,
+            none_of_these_log_likelihood_ratio: None,
+            by_record: None,
+            in_record: None,
+            formula: None,
+            gain_nats: None,
+            accepted: None,
+        };
+        let judged = |findings: &[Finding], verdict, search_complete| {
+            let remainder = ResidualTest {
+                verdict,
+                p_value: None,
+                description: String::new(),
+                line: None,
+                correlation: None,
+                outputs: Vec::new(),
+                unmodelled: Vec::new(),
+            };
+            Answer::judged(findings, &remainder, search_complete)
+        };
+        use ResidualVerdict::{NotTested, Unexplained, White};
+        let named = [finding];
+        assert_eq!(judged(&[], White, true), Verdict::Clean);
+        assert_eq!(judged(&[], NotTested, true), Verdict::Clean);
+        assert_eq!(judged(&[], Unexplained, true), Verdict::Unexplained);
+        assert_eq!(judged(&named, White, true), Verdict::EffectsFound);
+        assert_eq!(judged(&named, Unexplained, true), Verdict::NotSettled);
+        for findings in [&named[..], &[]] {
+            for verdict in [White, NotTested, Unexplained] {
+                assert_eq!(judged(findings, verdict, false), Verdict::NotSettled);
+            }
+        }
+    }
+}

@@ -2,7 +2,7 @@
 //! settled what is not.
 
 use gyrocal_answer::{Answer, Subject, Verdict, read_text, write_text};
-use gyrocal_diagnosis::prose::first_screen;
+use gyrocal_diagnosis::prose::{diagnosis, first_screen};
 use gyrocal_fleet::{FleetRecord, RecordName};
 use gyrocal_pages::of_result;
 use gyrocal_record::SourceText;
@@ -86,6 +86,17 @@ fn faults(answer: &Answer, text: &str) -> Result<Vec<String>, Error> {
     Ok(faults)
 }
 
+/// What is said of names that are settled alone: that others are excluded, or were all tested.
+const CLAIMS: [&str; 7] = [
+    "are excluded",
+    "or below the threshold",
+    "no alternatives",
+    "nothing else of the catalogue",
+    "ts set has no other effect",
+    "very effect",
+    "No alternative of the catalogue",
+];
+
 /// Places that call an answer settled.
 fn settled(answer: &Answer) -> Vec<String> {
     let mut places = Vec::new();
@@ -99,9 +110,17 @@ fn settled(answer: &Answer) -> Vec<String> {
     if !words.to_lowercase().contains("not settled") {
         places.push(format!("first screen: {words}"));
     }
-    let headline = of_result(answer).summary.headline;
+    let page = of_result(answer);
+    let headline = &page.summary.headline;
     if !headline.to_lowercase().contains("not settled") {
         places.push(format!("page: {headline}"));
     }
+    let said = match answer.subject {
+        Subject::Plant(_) => gyrocal_plant::sentences::all(answer).join(" "),
+        _ => format!("{:?} {:?}", first_screen(answer), diagnosis(answer)),
+    };
+    let said = format!("{said} {page:?}");
+    let claims = CLAIMS.iter().filter(|claim| said.contains(**claim));
+    places.extend(claims.map(|claim| format!("\"{claim}\"")));
     places
 }

@@ -97,6 +97,13 @@ fn exit_codes_are_as_listed() {
     assert_eq!(code(&[&["diagnose"], &swapped]), Some(0));
     assert_eq!(code(&[&["diagnose"], &swapped, asked]), Some(5));
     assert_eq!(code(&[&["calibrate"], &swapped]), Some(1));
+    // The third of three errors of accelerometers is left as a curve.
+    let three = ["csv.gz", "toml"].map(|end| {
+        let name = format!("tests/data/before/inputs/three_accelerometer.{end}");
+        repository(&name).display().to_string()
+    });
+    let three = [three[0].as_str(), "--bench", &three[1]];
+    assert_eq!(code(&[&["diagnose"], &three, asked]), Some(6));
     assert_eq!(code(&[&["nothing"]]), Some(2));
     // Without a command there is no result.
     assert_eq!(code(&[&[]]), Some(2));
