@@ -361,6 +361,7 @@ class Fleet(Result):
     __slots__ = ()
     units: int
     records: int
+    not_settled: int
     problems: list[Fields]
     false_discovery_rate: float
     group_probability: float
