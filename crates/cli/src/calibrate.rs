@@ -15,10 +15,10 @@ use gyrocal::Platform;
 use gyrocal_calibration::{
     Calibration, CalibrationError, GyroAxes, Options, Run, calibrate_runs, calibrate_strapdown,
 };
-use gyrocal_diagnosis::prose::is_correlation;
 use gyrocal_diagnosis::{
     CalibrationVerdict, DiagnoseOptions, calibration_verdict, fit_effects, screen_record,
 };
+use gyrocal_document::is_correlation;
 use gyrocal_pages::of_calibration;
 use gyrocal_record::{
     CalibrationMethod, EffectTest, FittedEffects, InputRole, Outputs, SetupProblem, printable_path,

@@ -11,8 +11,7 @@ use gyrocal::generated::MODEL_HASH;
 use gyrocal_answer::{Answer, Verdict};
 use gyrocal_calibration::{CalibrationError, Run};
 use gyrocal_diagnosis::{
-    DiagnoseOptions, Diagnosis, DiagnosisError, FILTER_EFFECT, Gate, TestedFilter,
-    diagnose_watched, prose,
+    DiagnoseOptions, Diagnosis, DiagnosisError, FILTER_EFFECT, Gate, TestedFilter, diagnose_watched,
 };
 use gyrocal_pages::{of_diagnosis, of_result};
 use gyrocal_record::{Bench, InputRole, Outputs, printable_path};
@@ -268,8 +267,8 @@ fn stopped(
 ) -> Result<Reply, Failure> {
     result.manifest = manifest_of(MODEL_HASH, result.manifest.seed, inputs)?;
     let mut answer = Reply::of(
-        prose::first_screen(&result),
-        layout(&prose::diagnosis(&result)),
+        gyrocal_document::first_screen(&result),
+        layout(&gyrocal_document::diagnosis(&result)),
     );
     let mut outputs = Outputs::new();
     if let Some(path) = &arguments.report {
@@ -291,8 +290,8 @@ fn stopped(
 fn answer(arguments: &DiagnoseArguments, run: &DiagnosisRun<'_>) -> Result<Reply, Failure> {
     let result = &run.diagnosis.result;
     let mut answer = Reply::of(
-        prose::first_screen(result),
-        layout(&prose::diagnosis(result)),
+        gyrocal_document::first_screen(result),
+        layout(&gyrocal_document::diagnosis(result)),
     );
     let mut outputs = Outputs::new();
     if let Some(folder) = &arguments.figures {

@@ -4,7 +4,7 @@ use clap::Args;
 use comfy_table::Cell;
 use gyrocal::effect::Enters;
 use gyrocal::{EFFECTS, Effect};
-use gyrocal_diagnosis::prose::{Screen, Standing, explained, tested, typical_size};
+use gyrocal_document::{Screen, Standing, explained, tested, typical_size};
 use gyrocal_record::{any_of, nearest_names, printable_line};
 use miette::miette;
 
@@ -40,7 +40,7 @@ pub(crate) fn run(arguments: &EffectsArguments) -> Result<Reply, Failure> {
         let ids: Vec<&str> = family.iter().map(|effect| effect.id).collect();
         screen.facts.insert(
             0,
-            gyrocal_diagnosis::prose::Fact {
+            gyrocal_document::Fact {
                 label: "family".to_owned(),
                 words: format!("{}: {}; below: {}", first.family, ids.join(", "), first.id),
             },

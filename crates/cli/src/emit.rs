@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use gyrocal_diagnosis::prose::{Screen, Standing};
+use gyrocal_document::{Screen, Standing};
 use gyrocal_emit::{Emission, EmitError, Extension, Number};
 use gyrocal_record::{ModelFile, Outputs, module_name, printable_path};
 use miette::{IntoDiagnostic as _, Report, WrapErr as _};

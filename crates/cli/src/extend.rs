@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use gyrocal::generated::MODEL_HASH;
 use gyrocal_answer::read_platform;
-use gyrocal_diagnosis::prose::{Screen, Standing};
+use gyrocal_document::{Screen, Standing};
 use gyrocal_record::{ExtensionReport, Gyros, LeftOut, Outputs, SCHEMA_VERSION, printable_path};
 
 use crate::outputs::{manifest, refuse_overlap};

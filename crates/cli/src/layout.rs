@@ -1,7 +1,7 @@
 //! Layout of an answer for a terminal: lines, lists and tables.
 
 use comfy_table::Cell;
-use gyrocal_diagnosis::prose::{Block, Table};
+use gyrocal_document::{Block, Table};
 
 use crate::tables::{right, table};
 use crate::text::{bullet, indented, paragraph};

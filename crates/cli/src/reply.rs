@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use gyrocal_diagnosis::prose::Screen;
+use gyrocal_document::Screen;
 use gyrocal_record::{printable, printable_path};
 
 use crate::terminal;

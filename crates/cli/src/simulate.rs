@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use gyrocal_diagnosis::prose::{Screen, Standing};
+use gyrocal_document::{Screen, Standing};
 use gyrocal_record::{Outputs, printable_path, shell_quoted};
 use gyrocal_truth::{Hidden, Scenario, Simulation, TruthReport, simulate_watched};
 use miette::miette;

@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use gyrocal::generated::MODEL_HASH;
-use gyrocal_diagnosis::prose::{Screen, Standing};
 use gyrocal_diagnosis::{
     WatchAlarm, WatchCause, WatchOptions, WatchReplay, WatchResult, watch_record,
 };
+use gyrocal_document::{Screen, Standing};
 use gyrocal_record::{Bench, write_json};
 
 use crate::diagnose::NotDiagnosed;

@@ -1,6 +1,6 @@
 //! The first screen of a plan.
 
-use gyrocal_diagnosis::prose::{Screen, Standing, counted, few, record_and_bench};
+use gyrocal_document::{Screen, Standing, counted, few, record_and_bench};
 use gyrocal_record::{InputRole, shell_quoted};
 
 use crate::prose::{attitude, hours, known, percent, undecided, unit_angles};

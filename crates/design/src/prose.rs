@@ -3,7 +3,7 @@
 use crate::result::{Aim, AttitudeOf, Outlook, PlanResult, Proposal, SetForecast};
 use gyrocal_record::printable_line;
 
-use gyrocal_diagnosis::prose::{Block, Column, Table, counted, setup};
+use gyrocal_document::{Block, Column, Table, counted, setup};
 
 /// Probability above which two causes count as distinguished.
 const DISTINGUISHED: f64 = 0.95;

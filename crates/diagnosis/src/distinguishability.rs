@@ -7,7 +7,6 @@ use gyrocal::effect::{self, EffectKind, Enters, Need};
 use gyrocal::{EFFECTS, Effect};
 use gyrocal_record::Record;
 
-use crate::prose;
 use gyrocal_answer::{
     Alternative, AlternativeKind, Experiment, ExperimentKind, Finding, Separation, SetUps,
 };
@@ -47,11 +46,14 @@ pub(crate) fn separate(finding: &mut Finding, searched: &[&str], field_is_known:
     finding.separations = present
         .map(|kind| match kind {
             AlternativeKind::ExactEquivalent => exact(&finding.effect),
-            AlternativeKind::NotSearched => {
-                separation(finding, kind, prose::near_twins(), testable.clone())
-            }
+            AlternativeKind::NotSearched => separation(
+                finding,
+                kind,
+                gyrocal_document::near_twins(),
+                testable.clone(),
+            ),
             _ => {
-                let why = prose::why_not_distinguished(finding.coverage);
+                let why = gyrocal_document::why_not_distinguished(finding.coverage);
                 separation(finding, kind, why, Vec::new())
             }
         })
@@ -73,8 +75,8 @@ pub(crate) fn set_ups_without_angles() -> SetUps {
     ];
     SetUps {
         members: members.map(str::to_owned).to_vec(),
-        why: prose::SET_UPS_WITHOUT_ANGLES.to_owned(),
-        would_separate: prose::would_distinguish(&[], &experiments),
+        why: gyrocal_document::SET_UPS_WITHOUT_ANGLES.to_owned(),
+        would_separate: gyrocal_document::would_distinguish(&[], &experiments),
         experiments,
     }
 }
@@ -126,7 +128,7 @@ pub(crate) fn tell_together(findings: &mut [Finding], correlation: f64) {
             .collect();
         for (separation, told) in finding.separations.iter_mut().zip(told) {
             if told {
-                separation.why += &prose::time_is_temperature(correlation);
+                separation.why += &gyrocal_document::time_is_temperature(correlation);
             }
         }
     }
@@ -153,7 +155,7 @@ fn separation(
     Separation {
         from,
         why,
-        words: prose::would_distinguish(&testable, &experiments),
+        words: gyrocal_document::would_distinguish(&testable, &experiments),
         testable,
         experiments,
     }
@@ -169,7 +171,7 @@ fn exact(named: &str) -> Separation {
         from: AlternativeKind::ExactEquivalent,
         why: equivalence.map_or("", |found| found.reason).to_owned(),
         testable: Vec::new(),
-        words: prose::would_distinguish(&[], &experiments),
+        words: gyrocal_document::would_distinguish(&[], &experiments),
         experiments,
     }
 }

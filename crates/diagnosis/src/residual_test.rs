@@ -6,11 +6,11 @@ use gyrocal_record::{AXES, Record};
 use gyrocal_statistics::{autocorrelation, p_of_least, periodogram, strongest_line};
 
 use crate::error_budget::RESIDUAL_TESTS;
-use crate::prose::residual_description;
 use gyrocal_answer::{
     ResidualCorrelation, ResidualLine, ResidualTest, ResidualVerdict, UnmodelledPattern,
     UnmodelledTerm,
 };
+use gyrocal_document::residual_description;
 
 /// Lags of the portmanteau test: structure shorter than these many rows.
 const LAGS: usize = 20;

@@ -5,7 +5,6 @@ use gyrocal::{EFFECTS, Effect};
 use gyrocal_hypothesis::{Ranked, Unavailable};
 
 use crate::noise::NoiseAudit;
-use crate::prose;
 use gyrocal_answer::{NotTested, NotTestedReason};
 
 /// State of the tests that were made.
@@ -40,7 +39,7 @@ pub(crate) fn not_tested(
     NotTested {
         effect: effect.to_owned(),
         reason,
-        why: prose::not_tested(reason, missing),
+        why: gyrocal_document::not_tested(reason, missing),
     }
 }
 

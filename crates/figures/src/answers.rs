@@ -2,7 +2,7 @@
 //! settled what is not.
 
 use gyrocal_answer::{Answer, Subject, Verdict, read_text, write_text};
-use gyrocal_diagnosis::prose::{diagnosis, first_screen};
+use gyrocal_document::{diagnosis, first_screen};
 use gyrocal_fleet::{FleetRecord, RecordName};
 use gyrocal_pages::of_result;
 use gyrocal_record::SourceText;
@@ -104,7 +104,7 @@ fn settled(answer: &Answer) -> Vec<String> {
         places.push("verdict".to_owned());
     }
     let words = match answer.subject {
-        Subject::Plant(_) => gyrocal_plant::sentences::verdict(answer),
+        Subject::Plant(_) => gyrocal_document::plant::verdict(answer),
         _ => first_screen(answer).verdict,
     };
     if !words.to_lowercase().contains("not settled") {
@@ -116,7 +116,7 @@ fn settled(answer: &Answer) -> Vec<String> {
         places.push(format!("page: {headline}"));
     }
     let said = match answer.subject {
-        Subject::Plant(_) => gyrocal_plant::sentences::all(answer).join(" "),
+        Subject::Plant(_) => gyrocal_document::plant::all(answer).join(" "),
         _ => format!("{:?} {:?}", first_screen(answer), diagnosis(answer)),
     };
     let said = format!("{said} {page:?}");

@@ -1,6 +1,6 @@
 //! The sentences and tables of what a fleet shows.
 
-use gyrocal_diagnosis::prose::{Block, Column, Table, counted};
+use gyrocal_document::{Block, Column, Table, counted};
 use gyrocal_statistics::format;
 
 use crate::answer::{

@@ -1,6 +1,6 @@
 //! Pieces of an answer in words as pieces of a page.
 
-use gyrocal_diagnosis::prose::{Block, Table};
+use gyrocal_document::{Block, Table};
 use gyrocal_report::page::{self, Cell, Column, Item, List};
 
 /// Each block as an item; blocks of a kind that a page does not know are left out.

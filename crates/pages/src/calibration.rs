@@ -1,7 +1,7 @@
 //! The page of a calibration.
 
 use gyrocal_calibration::FittedPlatform;
-use gyrocal_diagnosis::prose::{first_input_files, record_and_bench};
+use gyrocal_document::{first_input_files, record_and_bench};
 use gyrocal_record::{
     Bench, CalibrationReport, Coefficient, FitVerdict, NoiseReport, Record, RunReport,
 };

@@ -1,6 +1,6 @@
 //! The page of a fleet.
 
-use gyrocal_diagnosis::prose::counted;
+use gyrocal_document::counted;
 use gyrocal_fleet::{FleetResult, prose};
 use gyrocal_report::page::{
     Bar, BarGroup, Bars, Card, Cell, Column, Item, Part, Summary, Table, Tint, Tone,

@@ -1,7 +1,7 @@
 //! The page of a planned next run.
 
 use gyrocal_design::{AttitudeOf, Forecast, PlanResult, Proposal, prose};
-use gyrocal_diagnosis::prose::{Block, counted};
+use gyrocal_document::{Block, counted};
 use gyrocal_report::page::{
     Bar, BarGroup, Bars, Card, Cell, Column, Item, Part, Summary, Table, Tint, Tone,
 };

@@ -2,7 +2,6 @@
 //! then others. Bars of a page and a picture show the same.
 
 use gyrocal_answer::Answer;
-use gyrocal_diagnosis::prose;
 use gyrocal_report::page::{Bar, BarGroup, Bars, Tint};
 use gyrocal_report::{Omitted, RankedEffect, Ranking, RankingGroup, Role};
 use gyrocal_statistics::format;
@@ -46,7 +45,7 @@ impl Ranked {
             alternatives: finding
                 .alternatives
                 .iter()
-                .map(|other| (other.effect.clone(), prose::likelihood(other)))
+                .map(|other| (other.effect.clone(), gyrocal_document::likelihood(other)))
                 .collect(),
         });
         let shares = answer.false_alarm_shares.as_ref();

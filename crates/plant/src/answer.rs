@@ -19,8 +19,8 @@ use crate::fitted::FittedPlant;
 use crate::loaded::LoadedPlant;
 use crate::prediction::{errors, horizon_s};
 use crate::record::PlantRecord;
-use crate::sentences::{coloured, is_coloured, unmodelled};
 use crate::series::{correlations, of_output};
+use gyrocal_document::plant::{coloured, is_coloured, unmodelled};
 
 /// Lags of the test of whiteness.
 const LAGS: usize = 20;

@@ -7,7 +7,7 @@
 //! it, or takes generated Rust ([`Generated`]) for its functions. [`diagnose`] fits the nominal model to a
 //! [`PlantRecord`], searches for the effects of the catalogue and returns them with sets, sizes,
 //! significance and, with a later record, their gain: a [`gyrocal_answer::Answer`]. [`diagnose_records`] does so
-//! for several records of one plant. [`sentences`] say it in words.
+//! for several records of one plant. `gyrocal-document` says it in words.
 //!
 //! # How it works
 //!
@@ -22,13 +22,13 @@
 //! ```no_run
 //! use std::path::Path;
 //!
-//! use gyrocal_plant::{ColumnMap, LoadedPlant, SearchOptions, diagnose, sentences};
+//! use gyrocal_plant::{ColumnMap, LoadedPlant, SearchOptions, diagnose};
 //!
 //! let plant = LoadedPlant::read(Path::new("plant.json"))?;
 //! let columns = ColumnMap::read(Path::new("columns.toml"))?;
 //! let record = columns.record(plant.description(), Path::new("record.csv"))?;
 //! let diagnosed = diagnose(&plant, record, None, &SearchOptions::default())?;
-//! for sentence in sentences::all(&diagnosed.answer) {
+//! for sentence in gyrocal_document::plant::all(&diagnosed.answer) {
 //!     println!("{sentence}");
 //! }
 //! # Ok::<(), gyrocal_plant::PlantError>(())
@@ -64,7 +64,6 @@ mod pass;
 mod prediction;
 mod problem;
 mod record;
-pub mod sentences;
 mod series;
 mod several;
 mod solve;
@@ -84,6 +83,5 @@ pub use gyrocal_hypothesis::SearchOptions;
 pub use interpreted::Interpreted;
 pub use loaded::LoadedPlant;
 pub use record::PlantRecord;
-pub use sentences::mean_ratio;
 pub use series::{OutputCorrelation, OutputSeries, RecordSeries};
 pub use several::{DiagnosedRecords, NamedRecord, diagnose_records};

@@ -22,9 +22,9 @@ use crate::pass::{Keep, reduce};
 use crate::prediction::least_prior;
 use crate::problem::Problem;
 use crate::record::PlantRecord;
-use crate::sentences::mean_ratio;
 use crate::several::NamedRecord;
 use crate::solve::Solver;
+use gyrocal_document::plant::mean_ratio;
 
 /// Information on parameters of the model, by their index in the table of the plant, from the records and from a run.
 struct Informed<'a> {

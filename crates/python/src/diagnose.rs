@@ -6,7 +6,6 @@ use gyrocal_calibration::{CalibrationError, Run};
 use gyrocal_cli::NotDiagnosed;
 use gyrocal_diagnosis::{
     DiagnoseOptions, Diagnosis, DiagnosisError, FILTER_EFFECT, Gate, TestedFilter, diagnose_gated,
-    prose,
 };
 use gyrocal_record::InputRole;
 use gyrocal_setup::PlatformKind;
@@ -153,7 +152,7 @@ fn answer(
         }
     }
     result.manifest = manifest(MODEL_HASH, options.seed, inputs, command);
-    let blocks = json(&prose::diagnosis(&result))?;
+    let blocks = json(&gyrocal_document::diagnosis(&result))?;
     Ok((answer_text(&result)?, blocks, scores))
 }
 

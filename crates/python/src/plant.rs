@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use gyrocal_pages::{Part, of_plant};
-use gyrocal_plant::{LoadedPlant, PlantError, PlantRecord, SearchOptions, diagnose, sentences};
+use gyrocal_plant::{LoadedPlant, PlantError, PlantRecord, SearchOptions, diagnose};
 use gyrocal_record::{Input, Manifest, printable_path};
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
@@ -170,9 +170,9 @@ impl HeldPlant {
         let mut diagnosed = diagnose(&self.plant, record, later, options)?;
         let part = of_plant(&diagnosed, &name, &manifest).map_err(|error| Failure::of_text(&error));
         diagnosed.answer.manifest = manifest;
-        let sentences = json(&sentences::all(&diagnosed.answer))?;
+        let sentences = json(&gyrocal_document::plant::all(&diagnosed.answer))?;
         let result = answer_text(&diagnosed.answer)?;
-        Ok((result, sentences, HeldPage { part }))
+        Ok((result, HeldPage { part }))
     }
 
     fn record(&self, columns: Columns) -> Outcome<PlantRecord> {

@@ -1,6 +1,6 @@
 //! The first screen of `gyrocal allan`.
 
-use gyrocal_diagnosis::prose::{Screen, Standing, counted};
+use gyrocal_document::{Screen, Standing, counted};
 use gyrocal_statistics::allan::NoiseFit;
 use gyrocal_statistics::format;
 

@@ -4,9 +4,7 @@ use std::path::PathBuf;
 
 use gyrocal_answer::Parameter;
 use gyrocal_calibration::{NoiseRatio, RunResult, SiteQuantity};
-use gyrocal_diagnosis::prose::{
-    Column, Screen, Standing, Table, command_files, few, parameter_values,
-};
+use gyrocal_document::{Column, Screen, Standing, Table, command_files, few, parameter_values};
 use gyrocal_record::{EffectTest, FitVerdict, FittedEffects, InputRole};
 use gyrocal_statistics::format;
 

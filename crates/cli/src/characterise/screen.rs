@@ -1,6 +1,6 @@
 //! The first screen of `gyrocal characterise`.
 
-use gyrocal_diagnosis::prose::{Screen, Standing};
+use gyrocal_document::{Screen, Standing};
 use gyrocal_evaluation::{CellReport, Characteristic};
 
 /// Figures that are told one by one.

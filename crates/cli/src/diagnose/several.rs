@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use gyrocal::generated::MODEL_HASH;
-use gyrocal_diagnosis::{Gate, RecordToDiagnose, diagnose_records, prose};
+use gyrocal_diagnosis::{Gate, RecordToDiagnose, diagnose_records};
 use gyrocal_pages::{Part, of_diagnosis, of_result, pictures as charts};
 use gyrocal_record::{Bench, InputRole, Outputs, RecordFile, printable_path};
 use gyrocal_report::Picture;
@@ -62,8 +62,8 @@ pub(super) fn run(
     let result = &found.together.result;
     tracing::info!(verdict = ?result.verdict, "diagnosed");
     let mut answer = Reply::of(
-        prose::first_screen(result),
-        layout(&prose::diagnosis(result)),
+        gyrocal_document::first_screen(result),
+        layout(&gyrocal_document::diagnosis(result)),
     );
     let mut outputs = Outputs::new();
     if arguments.report.is_some() || arguments.figures.is_some() {

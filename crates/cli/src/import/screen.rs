@@ -1,6 +1,6 @@
 //! The first screen of `gyrocal import strapdown`.
 
-use gyrocal_diagnosis::prose::{Screen, Standing};
+use gyrocal_document::{Screen, Standing};
 use gyrocal_instruments::strapdown::ImportReport;
 use gyrocal_record::shell_quoted;
 

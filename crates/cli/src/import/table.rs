@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use gyrocal_diagnosis::prose::{Screen, Standing};
+use gyrocal_document::{Screen, Standing};
 use gyrocal_instruments::{Description, InstrumentError, average_file, read_record};
 use gyrocal_record::{Outputs, Record, ResultTable, printable_path, shell_quoted};
 

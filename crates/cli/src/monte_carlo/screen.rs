@@ -1,6 +1,6 @@
 //! The first screen of `gyrocal monte-carlo`.
 
-use gyrocal_diagnosis::prose::{Column, Screen, Standing, Table};
+use gyrocal_document::{Column, Screen, Standing, Table};
 use gyrocal_evaluation::{BandedMean, CalibrationSummary, MeasuredValue};
 use gyrocal_record::printable_path;
 use gyrocal_statistics::format;

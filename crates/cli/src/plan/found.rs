@@ -6,8 +6,8 @@ use std::path::Path;
 use gyrocal_answer::{Answer, read_platform};
 use gyrocal_calibration::{FittedPlatform, Options, Run};
 use gyrocal_design::{NamedCause, noise_of};
-use gyrocal_diagnosis::prose::counted;
 use gyrocal_diagnosis::{DiagnoseOptions, Gate, diagnose_watched};
+use gyrocal_document::counted;
 use gyrocal_record::{Bench, Input, Record, RecordFile, SetupProblem, printable_path};
 
 use super::failed::{NotPlanned, OtherInput};

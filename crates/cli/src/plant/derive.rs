@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use gyrocal_diagnosis::prose::{Screen, Standing};
+use gyrocal_document::{Screen, Standing};
 use gyrocal_plant::LoadedPlant;
 use gyrocal_plant_codegen::{derive, settings_of_a_command};
 use gyrocal_record::{Outputs, printable_path};

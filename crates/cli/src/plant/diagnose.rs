@@ -4,11 +4,10 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use gyrocal_answer::{Answer, Coefficients, Verdict, write_text};
-use gyrocal_diagnosis::prose::{Screen, Standing};
+use gyrocal_document::{Screen, Standing};
 use gyrocal_pages::{of_plant, plant_pictures};
 use gyrocal_plant::{
     ColumnMap, Diagnosed, LoadedPlant, NamedRecord, PlantError, SearchOptions, diagnose_records,
-    sentences,
 };
 use gyrocal_record::{Manifest, Outputs, printable_path};
 use gyrocal_statistics::format;
@@ -186,8 +185,8 @@ fn screen(answer: &Answer) -> Screen {
         Verdict::Unexplained => (Standing::Bad, "UNEXPLAINED"),
         _ => (Standing::Bad, "MODEL LACKS SOMETHING"),
     };
-    let mut screen = Screen::new(standing, verdict, sentences::verdict(answer));
-    for (label, words) in sentences::facts(answer) {
+    let mut screen = Screen::new(standing, verdict, gyrocal_document::plant::verdict(answer));
+    for (label, words) in gyrocal_document::plant::facts(answer) {
         screen.fact(label, words);
     }
     screen

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 use gyrocal_answer::{Answer, Subject, read_text};
-use gyrocal_diagnosis::prose::{Screen, Standing};
-use gyrocal_plant::{Extension, LoadedPlant, sentences};
+use gyrocal_document::{Screen, Standing};
+use gyrocal_plant::{Extension, LoadedPlant};
 use gyrocal_plant_codegen::{derive, settings_of_a_command};
 use gyrocal_record::{Error, InputErrorKind, Outputs, SourceText, printable_path};
 
@@ -80,7 +80,7 @@ fn shown(arguments: &ExtendArguments, answer: &Answer, extension: &Extension) ->
     };
     let mut screen = Screen::new(standing, verdict, headline);
     if !answer.is_settled() {
-        screen.fact("not settled", sentences::verdict(answer));
+        screen.fact("not settled", gyrocal_document::plant::verdict(answer));
     }
     for (effect, why) in &extension.left_out {
         screen.fact("left out", format!("{effect} {why}"));

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use gyrocal_diagnosis::prose::{Screen, Standing};
+use gyrocal_document::{Screen, Standing};
 use gyrocal_plant_codegen::{Package, Source};
 use gyrocal_record::{printable_path, shell_quoted};
 use miette::miette;

@@ -1,6 +1,6 @@
 //! The first screen of `gyrocal rates`.
 
-use gyrocal_diagnosis::prose::{Screen, Standing, counted};
+use gyrocal_document::{Screen, Standing, counted};
 use gyrocal_instruments::rates::RateReport;
 use gyrocal_record::printable_path;
 use gyrocal_statistics::format;

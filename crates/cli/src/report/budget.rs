@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 
 use comfy_table::Cell;
-use gyrocal_diagnosis::prose::{Screen, Standing};
 use gyrocal_diagnosis::{RecordUncertainty, UncertaintyResult, by_source};
+use gyrocal_document::{Screen, Standing};
 use gyrocal_statistics::format;
 
 use crate::tables::{right, table};

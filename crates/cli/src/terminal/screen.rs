@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use anstyle::{AnsiColor, Style};
-use gyrocal_diagnosis::prose::{Fact, NextStep, Screen, Standing};
+use gyrocal_document::{Fact, NextStep, Screen, Standing};
 use gyrocal_record::{printable, printable_line};
 
 use crate::layout::drawn;

@@ -1,6 +1,6 @@
 //! The first screen of `gyrocal tumble`.
 
-use gyrocal_diagnosis::prose::{Screen, Standing, counted, few};
+use gyrocal_document::{Screen, Standing, counted, few};
 use gyrocal_instruments::multi_position::{FewPositionReport, MultiPositionReport, PreparedTest};
 use gyrocal_statistics::format;
 

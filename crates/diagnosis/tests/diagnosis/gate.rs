@@ -2,8 +2,8 @@
 
 use gyrocal_answer::Answer;
 use gyrocal_calibration::{Options, Run, calibrate};
-use gyrocal_diagnosis::prose::first_screen;
 use gyrocal_diagnosis::{DiagnoseOptions, Gate, diagnose};
+use gyrocal_document::first_screen;
 use gyrocal_record::RecordFile;
 use gyrocal_setup::{PlatformKind, check_setup};
 use gyrocal_statistics::deviates::Draw;

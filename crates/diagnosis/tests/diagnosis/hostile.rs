@@ -2,8 +2,8 @@
 
 use gyrocal_answer::{Answer, Verdict};
 use gyrocal_calibration::work;
-use gyrocal_diagnosis::prose::{first_screen, may_also_be};
 use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
+use gyrocal_document::{first_screen, may_also_be};
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{Coefficients, Hidden, InitialAttitude, Scenario, simulate};
 

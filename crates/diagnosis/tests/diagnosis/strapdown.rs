@@ -4,7 +4,7 @@ use gyrocal_answer::{Answer, Verdict};
 use gyrocal_calibration::{CalibrationError, GyroAxes, Run};
 use gyrocal_diagnosis::{
     DiagnoseOptions, Diagnosis, DiagnosisError, Gate, RecordToDiagnose, diagnose, diagnose_gated,
-    diagnose_records, prose,
+    diagnose_records,
 };
 use gyrocal_record::{Bench, Input, InputRole, Record};
 use gyrocal_setup::PlatformKind;
@@ -120,8 +120,8 @@ fn files(mut result: Answer, inputs: &str) -> String {
         role: Some(role(path)),
     };
     result.manifest.inputs = inputs.split(' ').map(input).collect();
-    let files = prose::files(&result);
-    let next = prose::first_screen(&result).next;
+    let files = gyrocal_document::files(&result);
+    let next = gyrocal_document::first_screen(&result).next;
     assert!(!next.is_empty());
     for step in next {
         // The model file comes from the result of all records.

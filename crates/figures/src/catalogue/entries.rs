@@ -2,7 +2,7 @@
 
 use gyrocal::effect::Enters;
 use gyrocal::{EFFECTS, Effect};
-use gyrocal_diagnosis::prose::explained;
+use gyrocal_document::explained;
 
 use super::signature;
 

@@ -1,7 +1,6 @@
 //! What a diagnosis cannot tell, and the next run.
 
 use gyrocal_answer::{Answer, Verdict};
-use gyrocal_diagnosis::prose;
 use gyrocal_report::page::{Card, Cell, Column, Item, List, Section, Table};
 use gyrocal_statistics::format;
 
@@ -10,7 +9,7 @@ use super::summary::first_of;
 use crate::words::listed;
 
 pub(super) fn cannot_tell(result: &Answer) -> Section {
-    let groups = prose::groups(result).into_iter();
+    let groups = gyrocal_document::groups(result).into_iter();
     let groups = groups.map(|[members, why, words]| {
         Item::List(List {
             title: members,
@@ -78,7 +77,7 @@ fn undetected(result: &Answer) -> Option<Table> {
 
 /// The command that plans the next run.
 fn plan_command(result: &Answer) -> String {
-    format!("gyrocal plan {}", prose::files(result))
+    format!("gyrocal plan {}", gyrocal_document::files(result))
 }
 
 /// What reduces the sigmas.
@@ -129,7 +128,7 @@ pub(super) fn next_run(result: &Answer) -> Section {
         )));
         items.push(Item::Command(format!(
             "gyrocal calibrate {} --with {}",
-            prose::files(result),
+            gyrocal_document::files(result),
             effects.join(",")
         )));
     }

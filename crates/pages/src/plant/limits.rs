@@ -1,7 +1,6 @@
 //! What a record of a plant cannot tell.
 
 use gyrocal_answer::Answer;
-use gyrocal_plant::sentences;
 use gyrocal_report::page::{Cell, Column, Item, List, Section, Table};
 
 use crate::diagnosis::section;
@@ -19,7 +18,7 @@ pub(super) fn cannot_tell(answer: &Answer) -> Section {
     let directions = |is_gauge: bool| -> Vec<String> {
         let all = answer.undetermined.iter();
         let own = all.filter(|one| one.is_gauge == is_gauge);
-        own.map(sentences::direction).collect()
+        own.map(gyrocal_document::plant::direction).collect()
     };
     items.extend(list(
         "Gauges: no record of this plant shows them",

@@ -7,8 +7,8 @@ mod summary;
 mod tables;
 
 use gyrocal_answer::Answer;
-use gyrocal_diagnosis::prose::counted;
-use gyrocal_plant::{Diagnosed, sentences};
+use gyrocal_document::counted;
+use gyrocal_plant::Diagnosed;
 use gyrocal_record::Manifest;
 use gyrocal_report::page::{Item, List, Part, Section};
 use gyrocal_statistics::format;
@@ -59,7 +59,7 @@ fn part(answer: &Answer, name: &str, manifest: &Manifest, mut sections: Vec<Sect
         "The answer as the command prints it.",
         vec![Item::List(List {
             title: String::new(),
-            entries: sentences::all(answer),
+            entries: gyrocal_document::plant::all(answer),
         })],
     ));
     Part {

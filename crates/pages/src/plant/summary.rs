@@ -1,8 +1,7 @@
 //! The first screen of a diagnosis of a plant.
 
 use gyrocal_answer::{AlternativeKind, Answer, Finding, OutputError, Verdict};
-use gyrocal_diagnosis::prose::counted;
-use gyrocal_plant::sentences;
+use gyrocal_document::counted;
 use gyrocal_report::page::{Card, Cell, Column, Summary, Table, Tone};
 use gyrocal_statistics::format;
 
@@ -20,7 +19,7 @@ pub(super) fn summary(answer: &Answer) -> Summary {
     Summary {
         tone,
         headline,
-        sentence: sentences::verdict(answer),
+        sentence: gyrocal_document::plant::verdict(answer),
         cards: vec![
             cause(answer),
             alternatives(answer),
@@ -76,7 +75,7 @@ fn cause(answer: &Answer) -> Card {
                 false => "Not to the end: nothing is named".to_owned(),
             },
             text: unmodelled
-                .map(sentences::unmodelled)
+                .map(gyrocal_document::plant::unmodelled)
                 .chain(strongest)
                 .collect(),
             columns,
@@ -86,7 +85,7 @@ fn cause(answer: &Answer) -> Card {
     let mut text = vec![format!(
         "{:.1} sigma, {} after correction for the search",
         first.z,
-        sentences::probability(first)
+        gyrocal_document::plant::probability(first)
     )];
     if answer.findings.len() > 1 {
         let others = answer.findings[1..].iter();
@@ -107,7 +106,11 @@ fn cause(answer: &Answer) -> Card {
 }
 
 fn size(found: &Finding) -> String {
-    let sizes: Vec<String> = found.parameters.iter().map(sentences::parameter).collect();
+    let sizes: Vec<String> = found
+        .parameters
+        .iter()
+        .map(gyrocal_document::plant::parameter)
+        .collect();
     format!("{}: {}", found.effect, sizes.join(", "))
 }
 
@@ -135,7 +138,13 @@ fn alternatives(answer: &Answer) -> Card {
         .extend(equal.map(|id| format!("{id}: exact equivalent")));
     let rivals = first.of_kind(AlternativeKind::NotExcluded);
     let rivals: Vec<String> = rivals
-        .map(|other| format!("{}: {}", other.effect, sentences::likelihood(other)))
+        .map(|other| {
+            format!(
+                "{}: {}",
+                other.effect,
+                gyrocal_document::plant::likelihood(other)
+            )
+        })
         .collect();
     let more = rivals.len().saturating_sub(ALTERNATIVES);
     card.text.extend(rivals.into_iter().take(ALTERNATIVES));

@@ -1,7 +1,7 @@
 //! Sets, parameters, records and gain of a plant in tables.
 
 use gyrocal_answer::{AlternativeKind, Answer, Coefficients, Finding, OutputError};
-use gyrocal_plant::{Diagnosed, sentences};
+use gyrocal_plant::Diagnosed;
 use gyrocal_report::page::{
     Cell, Column, EstimateRow, Estimates, Item, Section, Table, Tint, ValueWithSigma,
 };
@@ -36,7 +36,7 @@ pub(super) fn sets(answer: &Answer) -> Option<Section> {
         .map(|one| Item::Table(set(answer, one)))
         .collect();
     let unmodelled = answer.remainder.unmodelled.iter();
-    items.extend(unmodelled.map(|one| Item::Text(sentences::unmodelled(one))));
+    items.extend(unmodelled.map(|one| Item::Text(gyrocal_document::plant::unmodelled(one))));
     Some(section(
         "sets",
         "Sets",
@@ -46,7 +46,11 @@ pub(super) fn sets(answer: &Answer) -> Option<Section> {
 }
 
 fn set(answer: &Answer, found: &Finding) -> Table {
-    let sizes: Vec<String> = found.parameters.iter().map(sentences::parameter).collect();
+    let sizes: Vec<String> = found
+        .parameters
+        .iter()
+        .map(gyrocal_document::plant::parameter)
+        .collect();
     let named = [
         found.effect.clone(),
         found.name.clone(),
@@ -133,7 +137,7 @@ pub(super) fn records(answer: &Answer) -> Option<Section> {
             one.name.clone(),
             one.record.rows.to_string(),
             format::short(one.record.duration_s, 4),
-            sentences::alone(one),
+            gyrocal_document::plant::alone(one),
         ];
         cells.map(Cell::from).to_vec()
     });
@@ -209,7 +213,7 @@ pub(super) fn gain(answer: &Answer, diagnosed: Option<&Diagnosed>) -> Option<Sec
     let later = gain.and_then(|gain| gain.validation.as_ref());
     match later {
         Some(later) => {
-            items.extend(sentences::later_record(answer).map(Item::Text));
+            items.extend(gyrocal_document::plant::later_record(answer).map(Item::Text));
             let title = format!(
                 "{:+.1} nats of predictive log score in the later record",
                 later.log_score_nats

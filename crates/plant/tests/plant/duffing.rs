@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use gyrocal_answer::write_text;
-use gyrocal_plant::{ColumnMap, SearchOptions, diagnose, sentences};
+use gyrocal_plant::{ColumnMap, SearchOptions, diagnose};
 use gyrocal_truth::plant::{Kind, Setting, simulate};
 
 use crate::{loaded, oscillator, record};
@@ -42,7 +42,12 @@ fn the_example_names_its_hidden_effect_and_gains_on_the_later_record() {
     );
     let answer = diagnosed.unwrap().answer;
     write_text(&answer).unwrap();
-    assert_eq!(answer.findings.len(), 1, "{:?}", sentences::all(&answer));
+    assert_eq!(
+        answer.findings.len(),
+        1,
+        "{:?}",
+        gyrocal_document::plant::all(&answer)
+    );
     let found = &answer.findings[0];
     assert!(found.set().any(|id| id == "v_rate.x^3"), "{found:?}");
     let size = &found.parameters[0];
@@ -74,11 +79,15 @@ fn a_clean_record_with_misdeclared_noise_has_no_finding() {
         let answer = diagnose(&plant, record, None, &SearchOptions::default())
             .unwrap()
             .answer;
-        assert!(answer.findings.is_empty(), "{:?}", sentences::all(&answer));
+        assert!(
+            answer.findings.is_empty(),
+            "{:?}",
+            gyrocal_document::plant::all(&answer)
+        );
         assert!(
             answer.remainder.unmodelled.is_empty(),
             "{:?}",
-            sentences::all(&answer)
+            gyrocal_document::plant::all(&answer)
         );
         let ratio = answer.noise[0].ratio;
         // Four standard deviations of the noise of 800 values.

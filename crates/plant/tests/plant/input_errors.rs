@@ -1,7 +1,7 @@
 //! Delay and play of inputs.
 
 use gyrocal_answer::Answer;
-use gyrocal_plant::{SearchOptions, diagnose, sentences};
+use gyrocal_plant::{SearchOptions, diagnose};
 use gyrocal_truth::plant::{Kind, Run, Setting, simulate};
 
 use crate::{loaded, prepared};
@@ -29,9 +29,14 @@ fn a_drive_that_is_logged_too_early_is_a_delay() {
     // A delay and a lag of half a row each do the same to second order: both sizes together are a maximum of
     // the likelihood too, but the delay alone explains as much.
     let [found] = answer.findings.as_slice() else {
-        panic!("{:?}", sentences::all(&answer));
+        panic!("{:?}", gyrocal_document::plant::all(&answer));
     };
-    assert_eq!(found.effect, "drive.delay", "{:?}", sentences::all(&answer));
+    assert_eq!(
+        found.effect,
+        "drive.delay",
+        "{:?}",
+        gyrocal_document::plant::all(&answer)
+    );
     let size = found.parameters[0].estimate;
     assert!((size - step_s).abs() < 0.02 * step_s, "{size}");
 }
@@ -45,7 +50,12 @@ fn a_lag_that_a_delay_replaced_stays_in_its_set() {
         run.inputs.push(run.inputs[ROWS - 2].clone());
         let answer = diagnosed(Kind::Servo, run);
         let set: Vec<&str> = answer.findings[0].set().collect();
-        assert_eq!(answer.findings.len(), 1, "{:?}", sentences::all(&answer));
+        assert_eq!(
+            answer.findings.len(),
+            1,
+            "{:?}",
+            gyrocal_document::plant::all(&answer)
+        );
         assert!(
             set.contains(&"drive.delay") && set.contains(&"y.lag"),
             "{set:?}"
@@ -63,7 +73,7 @@ fn an_oscillator_cannot_tell_a_late_drive_from_a_late_sensor() {
     let found = &answer.findings[0];
     // A linear plant does not change in time: both are the same but for second differences.
     let late = found.set().any(|id| id == "u.delay");
-    assert!(late, "{:?}", sentences::all(&answer));
+    assert!(late, "{:?}", gyrocal_document::plant::all(&answer));
     assert!(
         (found.parameters[0].estimate - step_s).abs() < 0.1 * step_s,
         "{found:?}"
@@ -79,6 +89,6 @@ fn play_far_above_the_noise_of_the_drive_is_found() {
     assert!(
         found.set().any(|id| id == "drive.play"),
         "{:?}",
-        sentences::all(&answer)
+        gyrocal_document::plant::all(&answer)
     );
 }

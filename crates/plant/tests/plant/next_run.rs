@@ -4,7 +4,7 @@ use gyrocal_answer::{Answer, Coefficients, Finding, NextRun, write_text};
 use gyrocal_hypothesis::FittedModel as _;
 use gyrocal_plant::{
     ColumnMap, Diagnosed, FittedPlant, LoadedPlant, NamedRecord, PlantRecord, SearchOptions,
-    diagnose, diagnose_records, mean_ratio, sentences,
+    diagnose, diagnose_records,
 };
 use gyrocal_truth::plant::Kind;
 
@@ -90,9 +90,11 @@ fn the_run_that_moves_more_comes_first() {
         panic!("two runs")
     };
     assert_eq!((best.name.as_str(), other.name.as_str()), ("more", "less"));
-    assert!(mean_ratio(best) < mean_ratio(other));
+    assert!(gyrocal_document::plant::mean_ratio(best) < gyrocal_document::plant::mean_ratio(other));
     write_text(&diagnosed.answer).unwrap();
-    let last = sentences::all(&diagnosed.answer).pop().unwrap();
+    let last = gyrocal_document::plant::all(&diagnosed.answer)
+        .pop()
+        .unwrap();
     assert!(last.starts_with("less (400 rows,"), "{last}");
 }
 
@@ -185,7 +187,7 @@ fn parts_of_a_record_gain_by_what_is_there_and_nothing_is_said_of_nothing() {
             .flatten()
             .all(|gain| *gain > 0.0)
     );
-    let words = sentences::parts(parts);
+    let words = gyrocal_document::plant::parts(parts);
     assert!(words.contains("what was found holds there"), "{words}");
     let clean = alone(&plant, &record(&plant, 41, 0.0)).answer;
     assert_eq!(clean.gain, None);

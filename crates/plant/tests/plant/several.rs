@@ -4,7 +4,6 @@ use gyrocal_answer::write_text;
 use gyrocal_hypothesis::FittedModel as _;
 use gyrocal_plant::{
     FittedPlant, LoadedPlant, NamedRecord, PlantRecord, SearchOptions, diagnose, diagnose_records,
-    sentences,
 };
 use gyrocal_truth::plant::{Kind, Setting};
 use nalgebra::DMatrix;
@@ -114,7 +113,12 @@ fn an_effect_is_found_together_and_told_for_each() {
     let options = SearchOptions::default();
     let found = diagnose_records(&plant, records.clone(), None, &options).unwrap();
     let answer = &found.together.answer;
-    assert_eq!(answer.findings.len(), 1, "{:?}", sentences::all(answer));
+    assert_eq!(
+        answer.findings.len(),
+        1,
+        "{:?}",
+        gyrocal_document::plant::all(answer)
+    );
     let own = &answer.findings[0];
     assert_eq!(own.effect, "v_rate.x^3");
     let size = &own.parameters[0];
@@ -141,7 +145,7 @@ fn an_effect_is_found_together_and_told_for_each() {
         // The noise of the sensor, 0.01 m, is left.
         assert!(one.open_loop[0].extended.unwrap() < 0.0115, "{one:?}");
     }
-    let verdicts = answer.records.iter().map(sentences::alone);
+    let verdicts = answer.records.iter().map(gyrocal_document::plant::alone);
     let found_alone: Vec<bool> = verdicts
         .map(|one| one.contains("lacks one effect"))
         .collect();

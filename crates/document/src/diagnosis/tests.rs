@@ -3,7 +3,7 @@
 use gyrocal_record::AXES;
 use gyrocal_statistics::format::p_bound;
 
-use super::format::{counted, duration, short, tested, with_sigma};
+use crate::format::{counted, duration, short, tested, with_sigma};
 use gyrocal_answer::{
     AllanCourse, Answer, FindingKind, ResidualTest, ResidualVerdict, UnmodelledPattern,
     UnmodelledTerm, Verdict,

@@ -2,9 +2,9 @@
 
 use gyrocal_statistics::format::{percent, short as rounded};
 
-use super::Block;
-use super::format::{short, tested, with_sigma};
 use super::records;
+use crate::Block;
+use crate::format::{short, tested, with_sigma};
 use gyrocal_answer::{Alternative, AlternativeKind, Answer, Finding, FindingKind, Parameter};
 
 /// Alternatives that an entry names; the ranking shows all of them.

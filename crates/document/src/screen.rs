@@ -3,7 +3,7 @@
 use gyrocal_record::{Input, InputRole, shell_quoted};
 use serde::Serialize;
 
-use super::Table;
+use crate::Table;
 
 /// The first screen of an answer: the verdict, how large and how sure it is, what else it might be,
 /// what it does to the coefficients, and what to do next. It fits a terminal of 80 columns and 24

@@ -3,9 +3,9 @@
 use gyrocal_record::printable_line;
 use gyrocal_statistics::format::percent;
 
-use super::Block;
-use super::format::{counted, tested};
-use super::screen::few;
+use crate::Block;
+use crate::format::{counted, tested};
+use crate::screen::few;
 use gyrocal_answer::{Answer, Finding, FindingKind, ResidualVerdict, SetupProblem, Verdict};
 
 /// Records that are named.

@@ -199,12 +199,14 @@ pub fn unmodelled(one: &UnmodelledTerm) -> String {
 }
 
 /// Whether what is left of an output is not white.
-pub(crate) fn is_coloured(one: &OutputTest) -> bool {
+#[must_use]
+pub fn is_coloured(one: &OutputTest) -> bool {
     one.p_value < RARE
 }
 
 /// That in words.
-pub(crate) fn coloured(one: &OutputTest) -> String {
+#[must_use]
+pub fn coloured(one: &OutputTest) -> String {
     format!(
         "What is left of output {} is not white noise ({}): the model still lacks something, or the noise is \
          coloured. Significances rest on white noise, take them as too good.",

@@ -3,9 +3,9 @@
 use gyrocal_statistics::format::percent;
 
 use super::first_screen::{ALTERNATIVES_SHOWN, plan, remainder};
-use super::format::counted;
 use super::records::files;
-use super::screen::{Screen, Standing, few};
+use crate::format::counted;
+use crate::screen::{Screen, Standing, few};
 use gyrocal_answer::{Answer, NotTestedReason};
 
 pub(super) fn clean(result: &Answer) -> Screen {

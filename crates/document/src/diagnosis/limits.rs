@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use gyrocal_statistics::format::percent;
 
-use super::Block;
+use crate::Block;
 use gyrocal_answer::{Answer, Experiment, ExperimentKind, NotTestedReason};
 
 /// Groups of indistinguishable effects, each with the experiment that would distinguish them.

@@ -3,18 +3,18 @@
 use gyrocal_statistics::format;
 
 /// Estimate and sigma with the digits that the sigma allows: `0.00133 ± 0.00008`.
-pub(super) fn with_sigma(estimate: f64, sigma: f64) -> String {
+pub(crate) fn with_sigma(estimate: f64, sigma: f64) -> String {
     let [estimate, sigma] = format::estimate(estimate, sigma);
     format!("{estimate} ± {sigma}")
 }
 
 /// A number with four digits at most.
-pub(super) fn short(value: f64) -> String {
+pub(crate) fn short(value: f64) -> String {
     format::short(value, 4)
 }
 
 /// A duration: seconds below an hour, hours beyond.
-pub(super) fn duration(seconds: f64) -> String {
+pub(crate) fn duration(seconds: f64) -> String {
     if seconds < 3600.0 {
         format!("{} s", short(seconds))
     } else {

@@ -4,7 +4,7 @@ use gyrocal::effect::{Continuation, EffectKind, Experiment, Need, NoiseProperty}
 use gyrocal::{EFFECTS, Effect};
 use gyrocal_statistics::format;
 
-use super::{Screen, Standing};
+use crate::{Screen, Standing};
 use gyrocal_answer::Answer;
 
 /// All that the catalogue says of an effect.

@@ -6,10 +6,10 @@ use gyrocal_statistics::format::{self, p_value, percent, with_sigma};
 use super::catalogue::has_random_walk;
 use super::clean_screen;
 use super::findings::{likely, value};
-use super::format::{NO_P, counted, short, tested};
 use super::records::{self, files};
-use super::screen::{Screen, Standing, few};
 use super::verdict;
+use crate::format::{NO_P, counted, short, tested};
+use crate::screen::{Screen, Standing, few};
 use gyrocal_answer::{Answer, Finding, FindingKind, Parameter, ResidualVerdict, Verdict};
 
 /// Findings that are told one by one.

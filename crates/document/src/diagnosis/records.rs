@@ -2,8 +2,8 @@
 
 use gyrocal_statistics::format::with_sigma;
 
-use super::screen::{input_files, record_and_bench};
-use super::{Column, Table};
+use crate::screen::{input_files, record_and_bench};
+use crate::{Column, Table};
 use gyrocal_answer::{Answer, Finding, FindingKind, SizeChoice, Verdict};
 
 /// Whether an effect has one size in all records, and its sizes in each.

@@ -5,8 +5,8 @@ use gyrocal_statistics::format::{self, p_cell};
 
 use super::catalogue::is_correlation;
 use super::findings::{likelihood, value};
-use super::format::{short, with_sigma};
-use super::{Block, Column, Table};
+use crate::format::{short, with_sigma};
+use crate::{Block, Column, Table};
 use gyrocal_answer::{
     Answer, CoefficientEstimate, Coefficients, Finding, FindingKind, Gain, NoiseLevel, Residuals,
 };
