@@ -172,7 +172,7 @@ impl HeldPlant {
         diagnosed.answer.manifest = manifest;
         let sentences = json(&gyrocal_document::plant::all(&diagnosed.answer))?;
         let result = answer_text(&diagnosed.answer)?;
-        Ok((result, HeldPage { part }))
+        Ok((result, sentences, HeldPage { part }))
     }
 
     fn record(&self, columns: Columns) -> Outcome<PlantRecord> {
