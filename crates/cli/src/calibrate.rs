@@ -18,12 +18,12 @@ use gyrocal_calibration::{
 use gyrocal_diagnosis::{
     CalibrationVerdict, DiagnoseOptions, calibration_verdict, fit_effects, screen_record,
 };
-use gyrocal_document::is_correlation;
 use gyrocal_pages::of_calibration;
 use gyrocal_record::{
     CalibrationMethod, EffectTest, FittedEffects, InputRole, Outputs, SetupProblem, printable_path,
 };
 use gyrocal_setup::PlatformKind;
+use gyrocal_words::is_correlation;
 use miette::miette;
 
 use crate::numbers::positive;

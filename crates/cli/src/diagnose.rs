@@ -267,8 +267,8 @@ fn stopped(
 ) -> Result<Reply, Failure> {
     result.manifest = manifest_of(MODEL_HASH, result.manifest.seed, inputs)?;
     let mut answer = Reply::of(
-        gyrocal_document::first_screen(&result),
-        layout(&gyrocal_document::diagnosis(&result)),
+        gyrocal_words::first_screen(&result),
+        layout(&gyrocal_words::diagnosis(&result)),
     );
     let mut outputs = Outputs::new();
     if let Some(path) = &arguments.report {
@@ -290,8 +290,8 @@ fn stopped(
 fn answer(arguments: &DiagnoseArguments, run: &DiagnosisRun<'_>) -> Result<Reply, Failure> {
     let result = &run.diagnosis.result;
     let mut answer = Reply::of(
-        gyrocal_document::first_screen(result),
-        layout(&gyrocal_document::diagnosis(result)),
+        gyrocal_words::first_screen(result),
+        layout(&gyrocal_words::diagnosis(result)),
     );
     let mut outputs = Outputs::new();
     if let Some(folder) = &arguments.figures {

@@ -4,8 +4,9 @@ use clap::Args;
 use comfy_table::Cell;
 use gyrocal::effect::Enters;
 use gyrocal::{EFFECTS, Effect};
-use gyrocal_document::{Screen, Standing, explained, tested, typical_size};
+use gyrocal_document::{Screen, Standing};
 use gyrocal_record::{any_of, nearest_names, printable_line};
+use gyrocal_words::{explained, tested, typical_size};
 use miette::miette;
 
 use crate::Failure;

@@ -1,35 +1,50 @@
 //! Layout of an answer for a terminal: lines, lists and tables.
 
 use comfy_table::Cell;
-use gyrocal_document::{Block, Table};
+use gyrocal_document::{Table, Words};
 
 use crate::tables::{right, table};
 use crate::text::{bullet, indented, paragraph};
 
-/// Blocks of an answer, an empty line between any two.
-pub(crate) fn layout(blocks: &[Block]) -> String {
-    let texts: Vec<String> = blocks.iter().map(block).collect();
+/// An answer in words, an empty line between any two pieces.
+pub(crate) fn layout(pieces: &[Words]) -> String {
+    let texts: Vec<String> = pieces.iter().map(piece).collect();
     texts.join("\n")
 }
 
-fn block(block: &Block) -> String {
-    match block {
-        Block::Paragraph(words) => paragraph(words),
-        Block::Entry {
-            number,
-            title,
-            paragraphs,
-        } => {
-            let body = paragraphs.iter().map(|words| indented("   ", words));
-            format!("{number}. {title}\n{}", body.collect::<String>())
+fn piece(piece: &Words) -> String {
+    match piece {
+        Words::Paragraph(words) => paragraph(words),
+        Words::Entry(entry) => {
+            let body = entry.paragraphs.iter();
+            let body = body.map(|words| indented("   ", words));
+            format!(
+                "{}. {}\n{}",
+                entry.number,
+                entry.title,
+                body.collect::<String>()
+            )
         }
-        Block::List { title, entries } => {
-            let entries = entries.iter().map(|entry| bullet(entry));
-            format!("{title}\n{}", entries.collect::<String>())
+        Words::List(list) => {
+            let entries = list.entries.iter().map(|entry| bullet(entry));
+            format!("{}{}", titled(&list.title), entries.collect::<String>())
         }
-        Block::Table(content) => format!("{}\n{}\n", paragraph(&content.title), drawn(content)),
-        // A block of a kind that this layout does not know.
-        _ => String::new(),
+        Words::Table(content) => {
+            let title = match content.title.is_empty() {
+                true => String::new(),
+                false => paragraph(&format!("{}:", content.title)) + "\n",
+            };
+            format!("{title}{}\n", drawn(content))
+        }
+        Words::Command(command) => format!("{command}\n"),
+    }
+}
+
+/// A title above what it stands for.
+fn titled(title: &str) -> String {
+    match title.is_empty() {
+        true => String::new(),
+        false => format!("{title}:\n"),
     }
 }
 
@@ -39,9 +54,9 @@ pub(crate) fn drawn(content: &Table) -> String {
     for row in &content.rows {
         let cells = row.iter().zip(&content.columns).map(|(cell, column)| {
             if column.is_number {
-                right(cell)
+                right(&cell.text)
             } else {
-                Cell::new(cell)
+                Cell::new(&cell.text)
             }
         });
         table.add_row(cells.collect::<Vec<_>>());

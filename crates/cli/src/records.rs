@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use gyrocal_calibration::shared_rows;
-use gyrocal_document::counted;
 use gyrocal_instruments::{Description, read_any};
 use gyrocal_record::{Outputs, Record, RecordFile, ResultTable, printable_path};
+use gyrocal_words::counted;
 use miette::miette;
 
 use crate::measured::unusable;

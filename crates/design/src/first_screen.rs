@@ -1,7 +1,8 @@
 //! The first screen of a plan.
 
-use gyrocal_document::{Screen, Standing, counted, few, record_and_bench};
+use gyrocal_document::{Screen, Standing};
 use gyrocal_record::{InputRole, shell_quoted};
+use gyrocal_words::{counted, few, record_and_bench};
 
 use crate::prose::{attitude, hours, known, percent, undecided, unit_angles};
 use crate::result::{Aim, AttitudeOf, PlanResult, Proposal};

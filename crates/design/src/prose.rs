@@ -3,7 +3,8 @@
 use crate::result::{Aim, AttitudeOf, Outlook, PlanResult, Proposal, SetForecast};
 use gyrocal_record::printable_line;
 
-use gyrocal_document::{Block, Column, Table, counted, setup};
+use gyrocal_document::{Column, List, Table, Words};
+use gyrocal_words::{counted, setup};
 
 /// Probability above which two causes count as distinguished.
 const DISTINGUISHED: f64 = 0.95;
@@ -13,36 +14,36 @@ const NOT_DISTINGUISHED: f64 = 0.5;
 
 /// The whole plan in reading order.
 #[must_use]
-pub fn prose(plan: &PlanResult) -> Vec<Block> {
+pub fn prose(plan: &PlanResult) -> Vec<Words> {
     let mut blocks = vec![
-        Block::Paragraph(known(plan)),
-        Block::Paragraph(question(plan)),
+        Words::Paragraph(known(plan)),
+        Words::Paragraph(question(plan)),
     ];
     blocks.extend(setup(&plan.setup));
-    blocks.extend(unit_angles(plan).map(|words| Block::Paragraph(format!("Unit angles {words}."))));
+    blocks.extend(unit_angles(plan).map(|words| Words::Paragraph(format!("Unit angles {words}."))));
     for (index, duration_s) in durations(plan).into_iter().enumerate() {
         let of_it = |p: &&Proposal| p.duration_s == duration_s;
         let Some(best) = plan.proposals.iter().find(of_it) else {
             continue;
         };
         let sets = undecided(&best.outlook).map(set_forecast);
-        blocks.push(Block::List {
+        blocks.push(Words::List(List {
             title: recommendation(plan, best, index == 0),
             entries: sets.chain([sigma_forecast(&best.outlook)]).collect(),
-        });
+        }));
         if let Some(going_on) = plan.going_on.iter().find(of_it) {
-            blocks.push(Block::Paragraph(continuation(&going_on.outlook)));
+            blocks.push(Words::Paragraph(continuation(&going_on.outlook)));
         }
     }
-    blocks.extend(goal(plan).map(Block::Paragraph));
+    blocks.extend(goal(plan).map(Words::Paragraph));
     blocks.extend(plan.inseparable.iter().map(|class| {
-        Block::Paragraph(format!(
+        Words::Paragraph(format!(
             "No run distinguishes {}: they are exact equivalents. `gyrocal diagnose` describes the \
              experiment that would.",
             class.join(" and ")
         ))
     }));
-    blocks.extend(tables(plan).into_iter().map(Block::Table));
+    blocks.extend(tables(plan).into_iter().map(Words::Table));
     blocks
 }
 
@@ -119,7 +120,7 @@ fn recommendation(plan: &PlanResult, best: &Proposal, first: bool) -> String {
         false => "records",
     };
     format!(
-        "{} {} from {}. Expected result of {records} and run together:",
+        "{} {} from {}. Expected result of {records} and run together",
         if first {
             "Recommended next run:"
         } else {
@@ -246,11 +247,11 @@ fn runs(plan: &PlanResult) -> Table {
         let all = plan.proposals.iter().chain(&plan.going_on);
         all.filter(move |run| run.duration_s == duration_s)
     });
-    Table {
-        title: "Runs for each duration, the best first:".to_owned(),
+    Table::new(
+        "Runs for each duration, the best first",
         columns,
-        rows: rows.map(row).collect(),
-    }
+        rows.map(row),
+    )
 }
 
 fn sigmas(now: &Outlook, later: &[(&str, &Outlook)], duration_s: f64) -> Table {
@@ -265,30 +266,28 @@ fn sigmas(now: &Outlook, later: &[(&str, &Outlook)], duration_s: f64) -> Table {
     let outlooks = core::iter::once(now).chain(later.iter().map(|(_, outlook)| *outlook));
     let values: Vec<Vec<String>> = outlooks.map(all).collect();
     let forecasts = now.coefficients.iter().chain(&now.sizes).enumerate();
-    Table {
-        title: format!(
-            "Standard deviations now, and after {} more:",
+    Table::new(
+        &format!(
+            "Standard deviations now, and after {} more",
             hours(duration_s)
         ),
         columns,
-        rows: forecasts
-            .map(|(index, forecast)| {
-                let cells = values
-                    .iter()
-                    .map(|sigmas| sigmas.get(index).cloned().unwrap_or_default());
-                core::iter::once(forecast.name.to_string())
-                    .chain(cells)
-                    .chain([forecast.unit.to_string()])
-                    .collect()
-            })
-            .collect(),
-    }
+        forecasts.map(|(index, forecast)| {
+            let cells = values
+                .iter()
+                .map(|sigmas| sigmas.get(index).cloned().unwrap_or_default());
+            core::iter::once(forecast.name.to_string())
+                .chain(cells)
+                .chain([forecast.unit.to_string()])
+                .collect::<Vec<_>>()
+        }),
+    )
 }
 
 fn members(plan: &PlanResult, later: &[(&str, &Outlook)]) -> Table {
     let mut columns = vec![Column::words("reported"), Column::words("alternative")];
     columns.extend(later.iter().map(|(head, _)| Column::numbers(head)));
-    let mut rows = Vec::new();
+    let mut rows: Vec<Vec<String>> = Vec::new();
     for (at, set) in plan.now.sets.iter().enumerate() {
         for (index, member) in set.members.iter().enumerate().skip(1) {
             let cells = later.iter().map(|(_, outlook)| {
@@ -299,14 +298,12 @@ fn members(plan: &PlanResult, later: &[(&str, &Outlook)]) -> Table {
             rows.push(ids.into_iter().chain(cells).collect());
         }
     }
-    Table {
-        title:
-            "Probability that the reported cause and the alternative are distinguished, whichever \
-                of the two it is:"
-                .to_owned(),
+    Table::new(
+        "Probability that the reported cause and the alternative are distinguished, whichever \
+                of the two it is",
         columns,
         rows,
-    }
+    )
 }
 
 /// The attitude of a run in words.

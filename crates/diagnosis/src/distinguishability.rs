@@ -46,14 +46,11 @@ pub(crate) fn separate(finding: &mut Finding, searched: &[&str], field_is_known:
     finding.separations = present
         .map(|kind| match kind {
             AlternativeKind::ExactEquivalent => exact(&finding.effect),
-            AlternativeKind::NotSearched => separation(
-                finding,
-                kind,
-                gyrocal_document::near_twins(),
-                testable.clone(),
-            ),
+            AlternativeKind::NotSearched => {
+                separation(finding, kind, gyrocal_words::near_twins(), testable.clone())
+            }
             _ => {
-                let why = gyrocal_document::why_not_distinguished(finding.coverage);
+                let why = gyrocal_words::why_not_distinguished(finding.coverage);
                 separation(finding, kind, why, Vec::new())
             }
         })
@@ -75,8 +72,8 @@ pub(crate) fn set_ups_without_angles() -> SetUps {
     ];
     SetUps {
         members: members.map(str::to_owned).to_vec(),
-        why: gyrocal_document::SET_UPS_WITHOUT_ANGLES.to_owned(),
-        would_separate: gyrocal_document::would_distinguish(&[], &experiments),
+        why: gyrocal_words::SET_UPS_WITHOUT_ANGLES.to_owned(),
+        would_separate: gyrocal_words::would_distinguish(&[], &experiments),
         experiments,
     }
 }
@@ -128,7 +125,7 @@ pub(crate) fn tell_together(findings: &mut [Finding], correlation: f64) {
             .collect();
         for (separation, told) in finding.separations.iter_mut().zip(told) {
             if told {
-                separation.why += &gyrocal_document::time_is_temperature(correlation);
+                separation.why += &gyrocal_words::time_is_temperature(correlation);
             }
         }
     }
@@ -155,7 +152,7 @@ fn separation(
     Separation {
         from,
         why,
-        words: gyrocal_document::would_distinguish(&testable, &experiments),
+        words: gyrocal_words::would_distinguish(&testable, &experiments),
         testable,
         experiments,
     }
@@ -171,7 +168,7 @@ fn exact(named: &str) -> Separation {
         from: AlternativeKind::ExactEquivalent,
         why: equivalence.map_or("", |found| found.reason).to_owned(),
         testable: Vec::new(),
-        words: gyrocal_document::would_distinguish(&[], &experiments),
+        words: gyrocal_words::would_distinguish(&[], &experiments),
         experiments,
     }
 }

@@ -18,7 +18,7 @@
 //!
 //! The [`magnitude_test`] and the residuals of the nominal model are reported beside these and make
 //! no finding. `gyrocal_design` designs the next run, [`error_budget`] lists all false-alarm shares and
-//! decision constants; `gyrocal-document` makes the sentences of an answer from the result alone.
+//! decision constants; `gyrocal-words` makes the sentences of an answer from the result alone.
 //!
 //! # The statistics in brief
 //!

@@ -10,7 +10,7 @@ use gyrocal_answer::{
     ResidualCorrelation, ResidualLine, ResidualTest, ResidualVerdict, UnmodelledPattern,
     UnmodelledTerm,
 };
-use gyrocal_document::residual_description;
+use gyrocal_words::residual_description;
 
 /// Lags of the portmanteau test: structure shorter than these many rows.
 const LAGS: usize = 20;

@@ -39,7 +39,7 @@ pub(crate) fn not_tested(
     NotTested {
         effect: effect.to_owned(),
         reason,
-        why: gyrocal_document::not_tested(reason, missing),
+        why: gyrocal_words::not_tested(reason, missing),
     }
 }
 

@@ -1,29 +1,14 @@
-//! What people read of an answer, as plain data: sentences, tables and first screens.
+//! A document as plain data: what people read of an answer, however it is shown.
 //!
-//! Everything here is made from [`gyrocal_answer`] alone, so that a terminal, a page and a program in another
-//! language say the same words. [`diagnosis()`] gives all of an answer on a platform in reading order, and [`plant`]
-//! that on any plant; whoever shows it breaks lines and draws tables. [`first_screen`] gives what a person reads
-//! first. The engines take from here the reasons that an answer carries in words.
+//! A [`Screen`] is what a person reads first; [`Words`] are the pieces of all that follows. Terminals, pages and other
+//! languages draw them.
 //!
 //! # What it does not do
 //!
-//! It estimates and judges nothing, and knows neither terminals nor pages.
+//! It makes no sentence and draws nothing.
 
-mod block;
-mod diagnosis;
-mod format;
-pub mod plant;
 mod screen;
+mod words;
 
-pub use block::{Block, Column, Table};
-pub use diagnosis::{
-    SET_UPS_WITHOUT_ANGLES, diagnosis, explained, files, first_screen, groups, is_correlation,
-    likelihood, may_also_be, near_twins, not_settled, not_tested, parameter_values,
-    residual_description, setup, tested, time_is_temperature, typical_size, why_not_distinguished,
-    would_distinguish,
-};
-pub use format::{NO_P, counted, tested as tested_p};
-pub use screen::{
-    Fact, NextStep, Screen, Standing, command_files, few, first_input_files, input_files,
-    record_and_bench,
-};
+pub use screen::{Fact, NextStep, Screen, Standing};
+pub use words::{Cell, Column, Entry, List, Table, Words};

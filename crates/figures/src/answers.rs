@@ -2,12 +2,12 @@
 //! settled what is not.
 
 use gyrocal_answer::{Answer, Subject, Verdict, read_text, write_text};
-use gyrocal_document::{diagnosis, first_screen};
 use gyrocal_fleet::{FleetRecord, RecordName};
 use gyrocal_pages::of_result;
 use gyrocal_record::SourceText;
 use gyrocal_testkit::contracts::{schema_of, violations};
 use gyrocal_testkit::run;
+use gyrocal_words::{diagnosis, first_screen};
 use serde::{Deserialize, Serialize};
 
 use crate::before::gyrocal;
@@ -104,7 +104,7 @@ fn settled(answer: &Answer) -> Vec<String> {
         places.push("verdict".to_owned());
     }
     let words = match answer.subject {
-        Subject::Plant(_) => gyrocal_document::plant::verdict(answer),
+        Subject::Plant(_) => gyrocal_words::plant::verdict(answer),
         _ => first_screen(answer).verdict,
     };
     if !words.to_lowercase().contains("not settled") {
@@ -116,7 +116,7 @@ fn settled(answer: &Answer) -> Vec<String> {
         places.push(format!("page: {headline}"));
     }
     let said = match answer.subject {
-        Subject::Plant(_) => gyrocal_document::plant::all(answer).join(" "),
+        Subject::Plant(_) => gyrocal_words::plant::all(answer).join(" "),
         _ => format!("{:?} {:?}", first_screen(answer), diagnosis(answer)),
     };
     let said = format!("{said} {page:?}");

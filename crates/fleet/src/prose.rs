@@ -1,7 +1,8 @@
 //! The sentences and tables of what a fleet shows.
 
-use gyrocal_document::{Block, Column, Table, counted};
+use gyrocal_document::{Column, List, Table, Words};
 use gyrocal_statistics::format;
+use gyrocal_words::counted;
 
 use crate::answer::{
     FleetCoefficient, FleetResult, Group, GroupFinding, GroupKind, RecurringCause, WithInterval,
@@ -12,37 +13,39 @@ const NAMED: usize = 5;
 
 /// The whole answer in reading order.
 #[must_use]
-pub fn all(fleet: &FleetResult) -> Vec<Block> {
+pub fn all(fleet: &FleetResult) -> Vec<Words> {
     let mut blocks = vec![
-        Block::Paragraph(size(fleet)),
-        Block::Paragraph(verdict(fleet)),
+        Words::Paragraph(size(fleet)),
+        Words::Paragraph(verdict(fleet)),
     ];
     let list = |title: &str, entries: Vec<String>| {
-        (!entries.is_empty()).then(|| Block::List {
-            title: title.to_owned(),
-            entries,
+        (!entries.is_empty()).then(|| {
+            Words::List(List {
+                title: title.to_owned(),
+                entries,
+            })
         })
     };
     let recurring = fleet.recurring.iter().map(recurring).collect();
     blocks.extend(list(
-        "Causes that recur below what units show by themselves:",
+        "Causes that recur below what units show by themselves",
         recurring,
     ));
     let groups = fleet.groups.iter().map(group).collect();
-    blocks.extend(list("Batches and sites that differ:", groups));
-    blocks.extend(list("Units outside of the others:", outliers(fleet)));
+    blocks.extend(list("Batches and sites that differ", groups));
+    blocks.extend(list("Units outside of the others", outliers(fleet)));
     let found = fleet.found_in_units.iter().map(|one| {
         let units = counted(one.units.len(), "unit");
         format!("`{}` in {units}: {}", one.effect, named(&one.units))
     });
     blocks.extend(list(
-        "Causes that units show by themselves:",
+        "Causes that units show by themselves",
         found.collect(),
     ));
-    blocks.push(Block::Table(coefficients(fleet)));
+    blocks.push(Words::Table(coefficients(fleet)));
     let problems = fleet.problems.iter();
     let problems = problems.map(|one| format!("{}/{}: {}", one.unit, one.record, one.problem));
-    blocks.extend(list("Records that are left out:", problems.collect()));
+    blocks.extend(list("Records that are left out", problems.collect()));
     blocks
 }
 
@@ -237,9 +240,9 @@ pub fn coefficients(fleet: &FleetResult) -> Table {
             one.unit.clone(),
         ]
     });
-    Table {
-        title: "Drift coefficients over the units, with 95 % intervals:".to_owned(),
-        columns: vec![
+    Table::new(
+        "Drift coefficients over the units, with 95 % intervals",
+        vec![
             Column::words("coefficient"),
             Column::numbers("mean"),
             Column::numbers("spread of units"),
@@ -247,6 +250,6 @@ pub fn coefficients(fleet: &FleetResult) -> Table {
             Column::numbers("change in a year"),
             Column::words("unit"),
         ],
-        rows: rows.collect(),
-    }
+        rows,
+    )
 }

@@ -1,31 +1,27 @@
 //! Pieces of an answer in words as pieces of a page.
 
-use gyrocal_document::{Block, Table};
+use gyrocal_document::{Table, Words};
 use gyrocal_report::page::{self, Cell, Column, Item, List};
 
-/// Each block as an item; blocks of a kind that a page does not know are left out.
-pub(crate) fn items(blocks: &[Block]) -> Vec<Item> {
-    blocks.iter().filter_map(item).collect()
+/// Each piece as an item.
+pub(crate) fn items(pieces: &[Words]) -> Vec<Item> {
+    pieces.iter().map(item).collect()
 }
 
-fn item(block: &Block) -> Option<Item> {
-    Some(match block {
-        Block::Paragraph(words) => Item::Text(words.clone()),
-        Block::Entry {
-            number,
-            title,
-            paragraphs,
-        } => Item::List(List {
-            title: format!("{number}. {title}"),
-            entries: paragraphs.clone(),
+fn item(piece: &Words) -> Item {
+    match piece {
+        Words::Paragraph(words) => Item::Text(words.clone()),
+        Words::Entry(entry) => Item::List(List {
+            title: format!("{}. {}", entry.number, entry.title),
+            entries: entry.paragraphs.clone(),
         }),
-        Block::List { title, entries } => Item::List(List {
-            title: heading(title),
-            entries: entries.clone(),
+        Words::List(list) => Item::List(List {
+            title: list.title.clone(),
+            entries: list.entries.clone(),
         }),
-        Block::Table(content) => Item::Table(table(content)),
-        _ => return None,
-    })
+        Words::Table(content) => Item::Table(table(content)),
+        Words::Command(command) => Item::Command(command.clone()),
+    }
 }
 
 pub(crate) fn table(content: &Table) -> page::Table {
@@ -35,15 +31,14 @@ pub(crate) fn table(content: &Table) -> page::Table {
     });
     let rows = content.rows.iter();
     page::Table {
-        title: heading(&content.title),
+        title: content.title.clone(),
         columns: columns.collect(),
         rows: rows
-            .map(|row| row.iter().cloned().map(Cell::from).collect())
+            .map(|row| {
+                row.iter()
+                    .map(|cell| Cell::from(cell.text.clone()))
+                    .collect()
+            })
             .collect(),
     }
-}
-
-/// A title without its colon.
-fn heading(title: &str) -> String {
-    title.trim_end_matches(':').to_owned()
 }

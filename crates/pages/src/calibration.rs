@@ -1,7 +1,6 @@
 //! The page of a calibration.
 
 use gyrocal_calibration::FittedPlatform;
-use gyrocal_document::{first_input_files, record_and_bench};
 use gyrocal_record::{
     Bench, CalibrationReport, Coefficient, FitVerdict, NoiseReport, Record, RunReport,
 };
@@ -10,6 +9,7 @@ use gyrocal_report::page::{
     Tone, ValueWithSigma,
 };
 use gyrocal_statistics::format;
+use gyrocal_words::{first_input_files, record_and_bench};
 
 use crate::diagnosis::open_loop::{self, Simulated};
 use crate::diagnosis::{coefficients, section};

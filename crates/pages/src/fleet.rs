@@ -1,11 +1,11 @@
 //! The page of a fleet.
 
-use gyrocal_document::counted;
 use gyrocal_fleet::{FleetResult, prose};
 use gyrocal_report::page::{
     Bar, BarGroup, Bars, Card, Cell, Column, Item, Part, Summary, Table, Tint, Tone,
 };
 use gyrocal_statistics::format;
+use gyrocal_words::counted;
 
 use crate::blocks;
 use crate::diagnosis::section;

@@ -2,7 +2,7 @@
 //!
 //! Each function makes a [`Part`] of one answer: the summary for the first screen, sections with
 //! charts and tables, and the origin. [`page`] puts parts together, [`Page::to_html`] makes a file of
-//! them. Sentences are those of the libraries ([`gyrocal_document`] and others); this crate
+//! them. Sentences are those of the libraries ([`gyrocal_words`] and others); this crate
 //! chooses and arranges.
 //!
 //! | part | of |

@@ -1,11 +1,12 @@
 //! The page of a planned next run.
 
 use gyrocal_design::{AttitudeOf, Forecast, PlanResult, Proposal, prose};
-use gyrocal_document::{Block, counted};
+use gyrocal_document::Words;
 use gyrocal_report::page::{
     Bar, BarGroup, Bars, Card, Cell, Column, Item, Part, Summary, Table, Tint, Tone,
 };
 use gyrocal_statistics::format;
+use gyrocal_words::counted;
 
 use crate::blocks;
 use crate::diagnosis::section;
@@ -54,23 +55,23 @@ pub fn of_plan(plan: &PlanResult) -> Part {
     }
 }
 
-fn summary(plan: &PlanResult, blocks: &[Block]) -> Summary {
+fn summary(plan: &PlanResult, blocks: &[Words]) -> Summary {
     let paragraphs: Vec<&String> = blocks
         .iter()
         .filter_map(|block| match block {
-            Block::Paragraph(words) => Some(words),
+            Words::Paragraph(words) => Some(words),
             _ => None,
         })
         .collect();
     let mut cards = Vec::new();
     let lists = blocks.iter().filter_map(|block| match block {
-        Block::List { title, entries } => Some((title, entries)),
+        Words::List(list) => Some((&list.title, &list.entries)),
         _ => None,
     });
     for (title, entries) in lists.take(2) {
         cards.push(Card {
             title: "Recommended".to_owned(),
-            main: title.trim_end_matches(':').to_owned(),
+            main: title.clone(),
             text: entries.iter().take(SHOWN).cloned().collect(),
             columns: 12,
             ..Card::default()

@@ -45,7 +45,7 @@ impl Ranked {
             alternatives: finding
                 .alternatives
                 .iter()
-                .map(|other| (other.effect.clone(), gyrocal_document::likelihood(other)))
+                .map(|other| (other.effect.clone(), gyrocal_words::likelihood(other)))
                 .collect(),
         });
         let shares = answer.false_alarm_shares.as_ref();

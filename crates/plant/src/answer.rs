@@ -20,7 +20,7 @@ use crate::loaded::LoadedPlant;
 use crate::prediction::{errors, horizon_s};
 use crate::record::PlantRecord;
 use crate::series::{correlations, of_output};
-use gyrocal_document::plant::{coloured, is_coloured, unmodelled};
+use gyrocal_words::plant::{coloured, is_coloured, unmodelled};
 
 /// Lags of the test of whiteness.
 const LAGS: usize = 20;

@@ -7,7 +7,7 @@
 //! it, or takes generated Rust ([`Generated`]) for its functions. [`diagnose`] fits the nominal model to a
 //! [`PlantRecord`], searches for the effects of the catalogue and returns them with sets, sizes,
 //! significance and, with a later record, their gain: a [`gyrocal_answer::Answer`]. [`diagnose_records`] does so
-//! for several records of one plant. `gyrocal-document` says it in words.
+//! for several records of one plant. `gyrocal-words` says it in words.
 //!
 //! # How it works
 //!
@@ -28,7 +28,7 @@
 //! let columns = ColumnMap::read(Path::new("columns.toml"))?;
 //! let record = columns.record(plant.description(), Path::new("record.csv"))?;
 //! let diagnosed = diagnose(&plant, record, None, &SearchOptions::default())?;
-//! for sentence in gyrocal_document::plant::all(&diagnosed.answer) {
+//! for sentence in gyrocal_words::plant::all(&diagnosed.answer) {
 //!     println!("{sentence}");
 //! }
 //! # Ok::<(), gyrocal_plant::PlantError>(())

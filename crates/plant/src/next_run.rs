@@ -24,7 +24,7 @@ use crate::problem::Problem;
 use crate::record::PlantRecord;
 use crate::several::NamedRecord;
 use crate::solve::Solver;
-use gyrocal_document::plant::mean_ratio;
+use gyrocal_words::plant::mean_ratio;
 
 /// Information on parameters of the model, by their index in the table of the plant, from the records and from a run.
 struct Informed<'a> {

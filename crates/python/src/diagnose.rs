@@ -152,7 +152,7 @@ fn answer(
         }
     }
     result.manifest = manifest(MODEL_HASH, options.seed, inputs, command);
-    let blocks = json(&gyrocal_document::diagnosis(&result))?;
+    let blocks = json(&gyrocal_words::diagnosis(&result))?;
     Ok((answer_text(&result)?, blocks, scores))
 }
 

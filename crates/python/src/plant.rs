@@ -170,7 +170,7 @@ impl HeldPlant {
         let mut diagnosed = diagnose(&self.plant, record, later, options)?;
         let part = of_plant(&diagnosed, &name, &manifest).map_err(|error| Failure::of_text(&error));
         diagnosed.answer.manifest = manifest;
-        let sentences = json(&gyrocal_document::plant::all(&diagnosed.answer))?;
+        let sentences = json(&gyrocal_words::plant::all(&diagnosed.answer))?;
         let result = answer_text(&diagnosed.answer)?;
         Ok((result, sentences, HeldPage { part }))
     }

@@ -1,8 +1,9 @@
 //! The first screen of `gyrocal allan`.
 
-use gyrocal_document::{Screen, Standing, counted};
+use gyrocal_document::{Screen, Standing};
 use gyrocal_statistics::allan::NoiseFit;
 use gyrocal_statistics::format;
+use gyrocal_words::counted;
 
 use super::Analysed;
 

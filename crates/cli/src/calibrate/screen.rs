@@ -4,9 +4,10 @@ use std::path::PathBuf;
 
 use gyrocal_answer::Parameter;
 use gyrocal_calibration::{NoiseRatio, RunResult, SiteQuantity};
-use gyrocal_document::{Column, Screen, Standing, Table, command_files, few, parameter_values};
+use gyrocal_document::{Column, Screen, Standing, Table};
 use gyrocal_record::{EffectTest, FitVerdict, FittedEffects, InputRole};
 use gyrocal_statistics::format;
+use gyrocal_words::{command_files, few, parameter_values};
 
 use super::{CalibrateArguments, CalibrationRun};
 use crate::extend::known;
@@ -295,9 +296,5 @@ fn table(found: &CalibrationRun) -> Table {
         });
         row
     });
-    Table {
-        title: String::new(),
-        columns,
-        rows: rows.collect(),
-    }
+    Table::new("", columns, rows)
 }

@@ -62,8 +62,8 @@ pub(super) fn run(
     let result = &found.together.result;
     tracing::info!(verdict = ?result.verdict, "diagnosed");
     let mut answer = Reply::of(
-        gyrocal_document::first_screen(result),
-        layout(&gyrocal_document::diagnosis(result)),
+        gyrocal_words::first_screen(result),
+        layout(&gyrocal_words::diagnosis(result)),
     );
     let mut outputs = Outputs::new();
     if arguments.report.is_some() || arguments.figures.is_some() {

@@ -79,14 +79,14 @@ fn table(summary: &CalibrationSummary) -> Table {
                 .map_or_else(String::new, |found| format!("{:.0} %", 100.0 * found.value)),
         ]
     });
-    Table {
-        title: String::new(),
-        columns: vec![
+    Table::new(
+        "",
+        vec![
             Column::words("coefficient"),
             Column::words("bias"),
             Column::words("RMSE / sigma"),
             Column::words("in 95 % CI"),
         ],
-        rows: rows.collect(),
-    }
+        rows,
+    )
 }

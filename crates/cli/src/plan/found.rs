@@ -7,8 +7,8 @@ use gyrocal_answer::{Answer, read_platform};
 use gyrocal_calibration::{FittedPlatform, Options, Run};
 use gyrocal_design::{NamedCause, noise_of};
 use gyrocal_diagnosis::{DiagnoseOptions, Gate, diagnose_watched};
-use gyrocal_document::counted;
 use gyrocal_record::{Bench, Input, Record, RecordFile, SetupProblem, printable_path};
+use gyrocal_words::counted;
 
 use super::failed::{NotPlanned, OtherInput};
 use super::{PlanArguments, several};

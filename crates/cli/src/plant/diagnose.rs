@@ -185,8 +185,8 @@ fn screen(answer: &Answer) -> Screen {
         Verdict::Unexplained => (Standing::Bad, "UNEXPLAINED"),
         _ => (Standing::Bad, "MODEL LACKS SOMETHING"),
     };
-    let mut screen = Screen::new(standing, verdict, gyrocal_document::plant::verdict(answer));
-    for (label, words) in gyrocal_document::plant::facts(answer) {
+    let mut screen = Screen::new(standing, verdict, gyrocal_words::plant::verdict(answer));
+    for (label, words) in gyrocal_words::plant::facts(answer) {
         screen.fact(label, words);
     }
     screen

@@ -80,7 +80,7 @@ fn shown(arguments: &ExtendArguments, answer: &Answer, extension: &Extension) ->
     };
     let mut screen = Screen::new(standing, verdict, headline);
     if !answer.is_settled() {
-        screen.fact("not settled", gyrocal_document::plant::verdict(answer));
+        screen.fact("not settled", gyrocal_words::plant::verdict(answer));
     }
     for (effect, why) in &extension.left_out {
         screen.fact("left out", format!("{effect} {why}"));

@@ -1,9 +1,10 @@
 //! The first screen of `gyrocal rates`.
 
-use gyrocal_document::{Screen, Standing, counted};
+use gyrocal_document::{Screen, Standing};
 use gyrocal_instruments::rates::RateReport;
 use gyrocal_record::printable_path;
 use gyrocal_statistics::format;
+use gyrocal_words::counted;
 
 use super::RatesArguments;
 

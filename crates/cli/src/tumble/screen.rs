@@ -1,8 +1,9 @@
 //! The first screen of `gyrocal tumble`.
 
-use gyrocal_document::{Screen, Standing, counted, few};
+use gyrocal_document::{Screen, Standing};
 use gyrocal_instruments::multi_position::{FewPositionReport, MultiPositionReport, PreparedTest};
 use gyrocal_statistics::format;
+use gyrocal_words::{counted, few};
 
 use super::{Report, TumbleArguments, named};
 use crate::outputs::command_line;

@@ -3,12 +3,12 @@
 use gyrocal_answer::Answer;
 use gyrocal_calibration::{Options, Run, calibrate};
 use gyrocal_diagnosis::{DiagnoseOptions, Gate, diagnose};
-use gyrocal_document::first_screen;
 use gyrocal_record::RecordFile;
 use gyrocal_setup::{PlatformKind, check_setup};
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::faults::leave_angles_out;
 use gyrocal_truth::{Coefficients, InitialAttitude, Scenario, Simulation, simulate};
+use gyrocal_words::first_screen;
 
 /// A record without angles, with coefficients from the prior of 1 deg/h.
 fn record(seed: u64, latitude_deg: f64, hours: f64) -> Simulation {

@@ -3,9 +3,9 @@
 use gyrocal_answer::{Answer, Verdict};
 use gyrocal_calibration::work;
 use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
-use gyrocal_document::{first_screen, may_also_be};
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{Coefficients, Hidden, InitialAttitude, Scenario, simulate};
+use gyrocal_words::{first_screen, may_also_be};
 
 /// The diagnosis of a day of two-minute means with effects hidden, and its work.
 fn diagnosed(seed: u64, hidden: Vec<Hidden>) -> (Answer, u64) {

@@ -120,8 +120,8 @@ fn files(mut result: Answer, inputs: &str) -> String {
         role: Some(role(path)),
     };
     result.manifest.inputs = inputs.split(' ').map(input).collect();
-    let files = gyrocal_document::files(&result);
-    let next = gyrocal_document::first_screen(&result).next;
+    let files = gyrocal_words::files(&result);
+    let next = gyrocal_words::first_screen(&result).next;
     assert!(!next.is_empty());
     for step in next {
         // The model file comes from the result of all records.

@@ -2,7 +2,7 @@
 
 use gyrocal::effect::Enters;
 use gyrocal::{EFFECTS, Effect};
-use gyrocal_document::explained;
+use gyrocal_words::explained;
 
 use super::signature;
 

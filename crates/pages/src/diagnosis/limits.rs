@@ -9,7 +9,7 @@ use super::summary::first_of;
 use crate::words::listed;
 
 pub(super) fn cannot_tell(result: &Answer) -> Section {
-    let groups = gyrocal_document::groups(result).into_iter();
+    let groups = gyrocal_words::groups(result).into_iter();
     let groups = groups.map(|[members, why, words]| {
         Item::List(List {
             title: members,
@@ -77,7 +77,7 @@ fn undetected(result: &Answer) -> Option<Table> {
 
 /// The command that plans the next run.
 fn plan_command(result: &Answer) -> String {
-    format!("gyrocal plan {}", gyrocal_document::files(result))
+    format!("gyrocal plan {}", gyrocal_words::files(result))
 }
 
 /// What reduces the sigmas.
@@ -128,7 +128,7 @@ pub(super) fn next_run(result: &Answer) -> Section {
         )));
         items.push(Item::Command(format!(
             "gyrocal calibrate {} --with {}",
-            gyrocal_document::files(result),
+            gyrocal_words::files(result),
             effects.join(",")
         )));
     }

@@ -66,11 +66,11 @@ fn part(result: &Answer, sections: Vec<Section>) -> Part {
     Part {
         name: match result.records.len() {
             0 => file_name(&result.manifest, 0, "record"),
-            several => gyrocal_document::counted(several, "record"),
+            several => gyrocal_words::counted(several, "record"),
         },
         size: format!(
             "{} over {:.2} days",
-            gyrocal_document::counted(result.record.rows, "row"),
+            gyrocal_words::counted(result.record.rows, "row"),
             result.record.duration_s / 86_400.0
         ),
         summary: summary::summary(result),
@@ -85,7 +85,7 @@ fn in_words(result: &Answer) -> Section {
         id: "words".to_owned(),
         title: "In words".to_owned(),
         lead: "The answer as the command prints it, with all its tables.".to_owned(),
-        items: blocks::items(&gyrocal_document::diagnosis(result)),
+        items: blocks::items(&gyrocal_words::diagnosis(result)),
     }
 }
 

@@ -16,8 +16,8 @@ const ROOM: usize = 300;
 
 pub(super) fn summary(result: &Answer) -> Summary {
     // The first paragraph is on the record.
-    let sentence = match gyrocal_document::diagnosis(result).into_iter().nth(1) {
-        Some(gyrocal_document::Block::Paragraph(words)) => words,
+    let sentence = match gyrocal_words::diagnosis(result).into_iter().nth(1) {
+        Some(gyrocal_document::Words::Paragraph(words)) => words,
         _ => String::new(),
     };
     let (tone, headline) = verdict(result);
@@ -53,7 +53,7 @@ fn verdict(result: &Answer) -> (Tone, String) {
         Verdict::Clean => (Tone::Good, "No model mismatch detected".to_owned()),
         Verdict::NotSettled => (
             Tone::Bad,
-            format!("Not settled: {}", gyrocal_document::not_settled(result)),
+            format!("Not settled: {}", gyrocal_words::not_settled(result)),
         ),
         Verdict::EffectsFound => {
             let effects: Vec<&str> = found(result).iter().map(|one| &*one.effect).collect();
@@ -90,7 +90,7 @@ fn cause(result: &Answer) -> Card {
     let size = first.parameters.first();
     let p = match first.p_value {
         Some(p) => format!("{} after correction for the search", format::p_value(p)),
-        None => gyrocal_document::NO_P.to_owned(),
+        None => gyrocal_words::NO_P.to_owned(),
     };
     let mut text = vec![format!("{:.1} sigma, {p}{}", first.z, further(first))];
     if let [_, others @ ..] = &*found
@@ -121,7 +121,7 @@ fn cause(result: &Answer) -> Card {
 fn further(finding: &Finding) -> String {
     match finding.parameters.get(1..) {
         Some(further) if !further.is_empty() => {
-            format!("; {}", gyrocal_document::parameter_values(further))
+            format!("; {}", gyrocal_words::parameter_values(further))
         }
         _ => String::new(),
     }
@@ -132,14 +132,14 @@ fn value(parameter: &Parameter) -> String {
         name: String::new(),
         ..parameter.clone()
     };
-    gyrocal_document::parameter_values(&[unnamed])
+    gyrocal_words::parameter_values(&[unnamed])
         .trim_start()
         .to_owned()
 }
 
 /// The first tile without a named cause.
 fn nothing(result: &Answer, columns: usize) -> Card {
-    let tested = gyrocal_document::counted(result.ranking.len(), "effect");
+    let tested = gyrocal_words::counted(result.ranking.len(), "effect");
     let strongest = result
         .ranking
         .first()
@@ -184,7 +184,7 @@ fn alternatives(result: &Answer) -> Card {
             main = match result.not_searched.len() {
                 _ if !result.is_settled() => "Not settled".to_owned(),
                 0 => "Nothing of typical size".to_owned(),
-                count => gyrocal_document::counted(count, "effect"),
+                count => gyrocal_words::counted(count, "effect"),
             };
             text.push(match result.not_searched.len() {
                 _ if !result.is_settled() => {
@@ -201,7 +201,7 @@ fn alternatives(result: &Answer) -> Card {
         Some(first) => {
             let others = first.alternatives.iter().take(ALTERNATIVES);
             let others: Vec<String> = others
-                .map(|other| format!("{}: {}", other.effect, gyrocal_document::likelihood(other)))
+                .map(|other| format!("{}: {}", other.effect, gyrocal_words::likelihood(other)))
                 .collect();
             let more = first.alternatives.len().saturating_sub(ALTERNATIVES);
             text.extend(others);
@@ -216,7 +216,7 @@ fn alternatives(result: &Answer) -> Card {
                 "Outside of the catalogue: probability {probability}"
             ));
             if first.alternatives.is_empty() {
-                main = gyrocal_document::may_also_be(result);
+                main = gyrocal_words::may_also_be(result);
                 if result.is_settled() {
                     let sure = first.coverage.map_or_else(String::new, |coverage| {
                         format!(" at {}", format::percent(coverage))

@@ -18,7 +18,7 @@ pub(super) fn cannot_tell(answer: &Answer) -> Section {
     let directions = |is_gauge: bool| -> Vec<String> {
         let all = answer.undetermined.iter();
         let own = all.filter(|one| one.is_gauge == is_gauge);
-        own.map(gyrocal_document::plant::direction).collect()
+        own.map(gyrocal_words::plant::direction).collect()
     };
     items.extend(list(
         "Gauges: no record of this plant shows them",

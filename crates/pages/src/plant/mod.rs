@@ -7,11 +7,11 @@ mod summary;
 mod tables;
 
 use gyrocal_answer::Answer;
-use gyrocal_document::counted;
 use gyrocal_plant::Diagnosed;
 use gyrocal_record::Manifest;
 use gyrocal_report::page::{Item, List, Part, Section};
 use gyrocal_statistics::format;
+use gyrocal_words::counted;
 
 use crate::diagnosis::{ranking, section};
 use crate::error::PageError;
@@ -59,7 +59,7 @@ fn part(answer: &Answer, name: &str, manifest: &Manifest, mut sections: Vec<Sect
         "The answer as the command prints it.",
         vec![Item::List(List {
             title: String::new(),
-            entries: gyrocal_document::plant::all(answer),
+            entries: gyrocal_words::plant::all(answer),
         })],
     ));
     Part {

@@ -1,9 +1,9 @@
 //! The first screen of a diagnosis of a plant.
 
 use gyrocal_answer::{AlternativeKind, Answer, Finding, OutputError, Verdict};
-use gyrocal_document::counted;
 use gyrocal_report::page::{Card, Cell, Column, Summary, Table, Tone};
 use gyrocal_statistics::format;
+use gyrocal_words::counted;
 
 use super::rms;
 use crate::words::{capitalised, listed};
@@ -19,7 +19,7 @@ pub(super) fn summary(answer: &Answer) -> Summary {
     Summary {
         tone,
         headline,
-        sentence: gyrocal_document::plant::verdict(answer),
+        sentence: gyrocal_words::plant::verdict(answer),
         cards: vec![
             cause(answer),
             alternatives(answer),
@@ -75,7 +75,7 @@ fn cause(answer: &Answer) -> Card {
                 false => "Not to the end: nothing is named".to_owned(),
             },
             text: unmodelled
-                .map(gyrocal_document::plant::unmodelled)
+                .map(gyrocal_words::plant::unmodelled)
                 .chain(strongest)
                 .collect(),
             columns,
@@ -85,7 +85,7 @@ fn cause(answer: &Answer) -> Card {
     let mut text = vec![format!(
         "{:.1} sigma, {} after correction for the search",
         first.z,
-        gyrocal_document::plant::probability(first)
+        gyrocal_words::plant::probability(first)
     )];
     if answer.findings.len() > 1 {
         let others = answer.findings[1..].iter();
@@ -109,7 +109,7 @@ fn size(found: &Finding) -> String {
     let sizes: Vec<String> = found
         .parameters
         .iter()
-        .map(gyrocal_document::plant::parameter)
+        .map(gyrocal_words::plant::parameter)
         .collect();
     format!("{}: {}", found.effect, sizes.join(", "))
 }
@@ -142,7 +142,7 @@ fn alternatives(answer: &Answer) -> Card {
             format!(
                 "{}: {}",
                 other.effect,
-                gyrocal_document::plant::likelihood(other)
+                gyrocal_words::plant::likelihood(other)
             )
         })
         .collect();

@@ -36,7 +36,7 @@ pub(super) fn sets(answer: &Answer) -> Option<Section> {
         .map(|one| Item::Table(set(answer, one)))
         .collect();
     let unmodelled = answer.remainder.unmodelled.iter();
-    items.extend(unmodelled.map(|one| Item::Text(gyrocal_document::plant::unmodelled(one))));
+    items.extend(unmodelled.map(|one| Item::Text(gyrocal_words::plant::unmodelled(one))));
     Some(section(
         "sets",
         "Sets",
@@ -49,7 +49,7 @@ fn set(answer: &Answer, found: &Finding) -> Table {
     let sizes: Vec<String> = found
         .parameters
         .iter()
-        .map(gyrocal_document::plant::parameter)
+        .map(gyrocal_words::plant::parameter)
         .collect();
     let named = [
         found.effect.clone(),
@@ -137,7 +137,7 @@ pub(super) fn records(answer: &Answer) -> Option<Section> {
             one.name.clone(),
             one.record.rows.to_string(),
             format::short(one.record.duration_s, 4),
-            gyrocal_document::plant::alone(one),
+            gyrocal_words::plant::alone(one),
         ];
         cells.map(Cell::from).to_vec()
     });
@@ -213,7 +213,7 @@ pub(super) fn gain(answer: &Answer, diagnosed: Option<&Diagnosed>) -> Option<Sec
     let later = gain.and_then(|gain| gain.validation.as_ref());
     match later {
         Some(later) => {
-            items.extend(gyrocal_document::plant::later_record(answer).map(Item::Text));
+            items.extend(gyrocal_words::plant::later_record(answer).map(Item::Text));
             let title = format!(
                 "{:+.1} nats of predictive log score in the later record",
                 later.log_score_nats

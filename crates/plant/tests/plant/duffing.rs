@@ -46,7 +46,7 @@ fn the_example_names_its_hidden_effect_and_gains_on_the_later_record() {
         answer.findings.len(),
         1,
         "{:?}",
-        gyrocal_document::plant::all(&answer)
+        gyrocal_words::plant::all(&answer)
     );
     let found = &answer.findings[0];
     assert!(found.set().any(|id| id == "v_rate.x^3"), "{found:?}");
@@ -82,12 +82,12 @@ fn a_clean_record_with_misdeclared_noise_has_no_finding() {
         assert!(
             answer.findings.is_empty(),
             "{:?}",
-            gyrocal_document::plant::all(&answer)
+            gyrocal_words::plant::all(&answer)
         );
         assert!(
             answer.remainder.unmodelled.is_empty(),
             "{:?}",
-            gyrocal_document::plant::all(&answer)
+            gyrocal_words::plant::all(&answer)
         );
         let ratio = answer.noise[0].ratio;
         // Four standard deviations of the noise of 800 values.

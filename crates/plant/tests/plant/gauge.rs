@@ -24,7 +24,7 @@ fn the_scale_of_the_unmeasured_tank_is_a_gauge() {
     for name in ["k1", "k2", "k4"] {
         assert!(names.contains(&name), "{names:?}");
     }
-    assert!(gyrocal_document::plant::direction(&directions[0]).starts_with("No record"));
+    assert!(gyrocal_words::plant::direction(&directions[0]).starts_with("No record"));
 }
 
 #[test]
@@ -46,7 +46,7 @@ fn an_input_that_never_moves_is_weak_excitation_and_no_gauge() {
     let answer = diagnose(&plant, still, None, &options).unwrap().answer;
     assert!(answer.undetermined[0].held.is_some());
     write_text(&answer).unwrap();
-    let sentences = gyrocal_document::plant::all(&answer);
+    let sentences = gyrocal_words::plant::all(&answer);
     for words in [
         "Input u never moves in this record",
         "with another input it would",

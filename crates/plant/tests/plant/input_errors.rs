@@ -29,13 +29,13 @@ fn a_drive_that_is_logged_too_early_is_a_delay() {
     // A delay and a lag of half a row each do the same to second order: both sizes together are a maximum of
     // the likelihood too, but the delay alone explains as much.
     let [found] = answer.findings.as_slice() else {
-        panic!("{:?}", gyrocal_document::plant::all(&answer));
+        panic!("{:?}", gyrocal_words::plant::all(&answer));
     };
     assert_eq!(
         found.effect,
         "drive.delay",
         "{:?}",
-        gyrocal_document::plant::all(&answer)
+        gyrocal_words::plant::all(&answer)
     );
     let size = found.parameters[0].estimate;
     assert!((size - step_s).abs() < 0.02 * step_s, "{size}");
@@ -54,7 +54,7 @@ fn a_lag_that_a_delay_replaced_stays_in_its_set() {
             answer.findings.len(),
             1,
             "{:?}",
-            gyrocal_document::plant::all(&answer)
+            gyrocal_words::plant::all(&answer)
         );
         assert!(
             set.contains(&"drive.delay") && set.contains(&"y.lag"),
@@ -73,7 +73,7 @@ fn an_oscillator_cannot_tell_a_late_drive_from_a_late_sensor() {
     let found = &answer.findings[0];
     // A linear plant does not change in time: both are the same but for second differences.
     let late = found.set().any(|id| id == "u.delay");
-    assert!(late, "{:?}", gyrocal_document::plant::all(&answer));
+    assert!(late, "{:?}", gyrocal_words::plant::all(&answer));
     assert!(
         (found.parameters[0].estimate - step_s).abs() < 0.1 * step_s,
         "{found:?}"
@@ -89,6 +89,6 @@ fn play_far_above_the_noise_of_the_drive_is_found() {
     assert!(
         found.set().any(|id| id == "drive.play"),
         "{:?}",
-        gyrocal_document::plant::all(&answer)
+        gyrocal_words::plant::all(&answer)
     );
 }

@@ -90,11 +90,9 @@ fn the_run_that_moves_more_comes_first() {
         panic!("two runs")
     };
     assert_eq!((best.name.as_str(), other.name.as_str()), ("more", "less"));
-    assert!(gyrocal_document::plant::mean_ratio(best) < gyrocal_document::plant::mean_ratio(other));
+    assert!(gyrocal_words::plant::mean_ratio(best) < gyrocal_words::plant::mean_ratio(other));
     write_text(&diagnosed.answer).unwrap();
-    let last = gyrocal_document::plant::all(&diagnosed.answer)
-        .pop()
-        .unwrap();
+    let last = gyrocal_words::plant::all(&diagnosed.answer).pop().unwrap();
     assert!(last.starts_with("less (400 rows,"), "{last}");
 }
 
@@ -187,7 +185,7 @@ fn parts_of_a_record_gain_by_what_is_there_and_nothing_is_said_of_nothing() {
             .flatten()
             .all(|gain| *gain > 0.0)
     );
-    let words = gyrocal_document::plant::parts(parts);
+    let words = gyrocal_words::plant::parts(parts);
     assert!(words.contains("what was found holds there"), "{words}");
     let clean = alone(&plant, &record(&plant, 41, 0.0)).answer;
     assert_eq!(clean.gain, None);

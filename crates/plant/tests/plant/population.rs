@@ -36,7 +36,7 @@ fn clean_records_have_no_findings() {
             setting.noise = Stream::new(seed, 9).log_between(0.5, 2.0);
             let answer = diagnosed(&setting);
             if answer.has_findings() {
-                alarms.push((kind, seed, gyrocal_document::plant::all(&answer)));
+                alarms.push((kind, seed, gyrocal_words::plant::all(&answer)));
             }
         }
     }
@@ -60,7 +60,7 @@ fn sets_hold_the_hidden_effect() {
             }
             count += 1;
             let answer = diagnosed(&setting);
-            let words = gyrocal_document::plant::verdict(&answer);
+            let words = gyrocal_words::plant::verdict(&answer);
             let is_open = answer.verdict == Verdict::NotSettled;
             assert_eq!(words.contains("is not settled"), is_open, "{words}");
             let mut findings = answer.findings.iter();
@@ -70,7 +70,7 @@ fn sets_hold_the_hidden_effect() {
                 set.any(|id| id == effect.0)
             });
             if !holds {
-                misses.push((kind, seed, effect.0, gyrocal_document::plant::all(&answer)));
+                misses.push((kind, seed, effect.0, gyrocal_words::plant::all(&answer)));
             }
         }
     }

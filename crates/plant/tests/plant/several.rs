@@ -117,7 +117,7 @@ fn an_effect_is_found_together_and_told_for_each() {
         answer.findings.len(),
         1,
         "{:?}",
-        gyrocal_document::plant::all(answer)
+        gyrocal_words::plant::all(answer)
     );
     let own = &answer.findings[0];
     assert_eq!(own.effect, "v_rate.x^3");
@@ -145,7 +145,7 @@ fn an_effect_is_found_together_and_told_for_each() {
         // The noise of the sensor, 0.01 m, is left.
         assert!(one.open_loop[0].extended.unwrap() < 0.0115, "{one:?}");
     }
-    let verdicts = answer.records.iter().map(gyrocal_document::plant::alone);
+    let verdicts = answer.records.iter().map(gyrocal_words::plant::alone);
     let found_alone: Vec<bool> = verdicts
         .map(|one| one.contains("lacks one effect"))
         .collect();

@@ -4,8 +4,8 @@ use gyrocal::effect::{Continuation, EffectKind, Experiment, Need, NoiseProperty}
 use gyrocal::{EFFECTS, Effect};
 use gyrocal_statistics::format;
 
-use crate::{Screen, Standing};
 use gyrocal_answer::Answer;
+use gyrocal_document::{Screen, Standing};
 
 /// All that the catalogue says of an effect.
 #[must_use]

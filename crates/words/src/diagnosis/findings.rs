@@ -3,20 +3,22 @@
 use gyrocal_statistics::format::{percent, short as rounded};
 
 use super::records;
-use crate::Block;
 use crate::format::{short, tested, with_sigma};
 use gyrocal_answer::{Alternative, AlternativeKind, Answer, Finding, FindingKind, Parameter};
+use gyrocal_document::{Entry, Words};
 
 /// Alternatives that an entry names; the ranking shows all of them.
 const ALTERNATIVES_SHOWN: usize = 4;
 
 /// One entry for each detected effect.
-pub(super) fn entries(result: &Answer) -> impl Iterator<Item = Block> {
+pub(super) fn entries(result: &Answer) -> impl Iterator<Item = Words> {
     let findings = result.findings.iter().enumerate();
-    findings.map(|(index, finding)| Block::Entry {
-        number: index + 1,
-        title: format!("{}: {}", finding.effect, finding.name),
-        paragraphs: paragraphs(finding),
+    findings.map(|(index, finding)| {
+        Words::Entry(Entry {
+            number: index + 1,
+            title: format!("{}: {}", finding.effect, finding.name),
+            paragraphs: paragraphs(finding),
+        })
     })
 }
 

@@ -4,9 +4,10 @@ use gyrocal_statistics::format::percent;
 
 use super::first_screen::{ALTERNATIVES_SHOWN, plan, remainder};
 use super::records::files;
+use crate::files::few;
 use crate::format::counted;
-use crate::screen::{Screen, Standing, few};
 use gyrocal_answer::{Answer, NotTestedReason};
+use gyrocal_document::{Screen, Standing};
 
 pub(super) fn clean(result: &Answer) -> Screen {
     let is_short = result.hides_most();

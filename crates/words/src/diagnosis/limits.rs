@@ -4,18 +4,20 @@ use std::collections::BTreeMap;
 
 use gyrocal_statistics::format::percent;
 
-use crate::Block;
 use gyrocal_answer::{Answer, Experiment, ExperimentKind, NotTestedReason};
+use gyrocal_document::{List, Words};
 
 /// Groups of indistinguishable effects, each with the experiment that would distinguish them.
-pub(super) fn indistinguishable(result: &Answer) -> Option<Block> {
+pub(super) fn indistinguishable(result: &Answer) -> Option<Words> {
     let entries = groups(result);
-    (!entries.is_empty()).then(|| Block::List {
-        title: "Not distinguishable, and the experiment that would distinguish them:".to_owned(),
-        entries: entries
-            .into_iter()
-            .map(|[members, why, words]| format!("{members}: {why}. Experiment: {words}."))
-            .collect(),
+    (!entries.is_empty()).then(|| {
+        Words::List(List {
+            title: "Not distinguishable, and the experiment that would distinguish them".to_owned(),
+            entries: entries
+                .into_iter()
+                .map(|[members, why, words]| format!("{members}: {why}. Experiment: {words}."))
+                .collect(),
+        })
     })
 }
 
@@ -39,7 +41,7 @@ pub fn groups(result: &Answer) -> Vec<[String; 3]> {
 }
 
 /// Effects that were not tested or are not detectable, by reason.
-pub(super) fn untested(result: &Answer) -> Option<Block> {
+pub(super) fn untested(result: &Answer) -> Option<Words> {
     let mut by_reason: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
     for effect in &result.not_searched {
         by_reason
@@ -47,12 +49,14 @@ pub(super) fn untested(result: &Answer) -> Option<Block> {
             .or_default()
             .push(&effect.effect);
     }
-    (!by_reason.is_empty()).then(|| Block::List {
-        title: "Not tested, or not detectable in this record:".to_owned(),
-        entries: by_reason
-            .into_iter()
-            .map(|(why, effects)| format!("{}: {why}", effects.join(", ")))
-            .collect(),
+    (!by_reason.is_empty()).then(|| {
+        Words::List(List {
+            title: "Not tested, or not detectable in this record".to_owned(),
+            entries: by_reason
+                .into_iter()
+                .map(|(why, effects)| format!("{}: {why}", effects.join(", ")))
+                .collect(),
+        })
     })
 }
 

@@ -8,9 +8,10 @@ use super::clean_screen;
 use super::findings::{likely, value};
 use super::records::{self, files};
 use super::verdict;
+use crate::files::few;
 use crate::format::{NO_P, counted, short, tested};
-use crate::screen::{Screen, Standing, few};
 use gyrocal_answer::{Answer, Finding, FindingKind, Parameter, ResidualVerdict, Verdict};
+use gyrocal_document::{Screen, Standing};
 
 /// Findings that are told one by one.
 const FINDINGS_SHOWN: usize = 4;

@@ -13,7 +13,7 @@ mod verdict;
 
 use gyrocal_answer::{Answer, Verdict};
 
-use crate::Block;
+use gyrocal_document::Words;
 
 pub use catalogue::{explained, is_correlation, tested, typical_size};
 pub use findings::{likelihood, parameter_values};
@@ -29,26 +29,26 @@ pub use verdict::{not_settled, setup};
 /// The whole answer in reading order: record, verdict, magnitude test, findings, limits, gain,
 /// residual test, tables.
 #[must_use]
-pub fn diagnosis(result: &Answer) -> Vec<Block> {
+pub fn diagnosis(result: &Answer) -> Vec<Words> {
     let mut blocks = vec![
-        Block::Paragraph(verdict::record(result)),
-        Block::Paragraph(verdict::verdict(result)),
+        Words::Paragraph(verdict::record(result)),
+        Words::Paragraph(verdict::verdict(result)),
     ];
     blocks.extend(verdict::setup(&result.setup));
     if result.verdict == Verdict::Setup {
         return blocks;
     }
-    blocks.extend(verdict::unfinished(result).map(Block::Paragraph));
-    blocks.push(Block::Paragraph(tests::magnitude(result)));
+    blocks.extend(verdict::unfinished(result).map(Words::Paragraph));
+    blocks.push(Words::Paragraph(tests::magnitude(result)));
     blocks.extend(findings::entries(result));
-    blocks.extend(records::table(result).map(Block::Table));
-    blocks.extend(tests::filter(result).map(Block::Paragraph));
+    blocks.extend(records::table(result).map(Words::Table));
+    blocks.extend(tests::filter(result).map(Words::Paragraph));
     blocks.extend(limits::indistinguishable(result));
-    blocks.extend(gain::paragraphs(result).map(Block::Paragraph));
-    blocks.push(Block::Paragraph(tests::whiteness(result)));
-    blocks.push(Block::Paragraph(tests::allan(result)));
+    blocks.extend(gain::paragraphs(result).map(Words::Paragraph));
+    blocks.push(Words::Paragraph(tests::whiteness(result)));
+    blocks.push(Words::Paragraph(tests::allan(result)));
     blocks.extend(tables::all(result));
-    blocks.extend(tests::noise_audit(result).map(Block::Paragraph));
+    blocks.extend(tests::noise_audit(result).map(Words::Paragraph));
     blocks.extend(limits::untested(result));
     blocks
 }

@@ -2,9 +2,9 @@
 
 use gyrocal_statistics::format::with_sigma;
 
-use crate::screen::{input_files, record_and_bench};
-use crate::{Column, Table};
+use crate::files::{input_files, record_and_bench};
 use gyrocal_answer::{Answer, Finding, FindingKind, SizeChoice, Verdict};
+use gyrocal_document::{Column, Table};
 
 /// Whether an effect has one size in all records, and its sizes in each.
 pub(super) fn sizes(finding: &Finding) -> Option<String> {
@@ -44,27 +44,25 @@ pub(super) fn table(result: &Answer) -> Option<Table> {
         return None;
     }
     let records = result.records.iter().enumerate();
-    Some(Table {
-        title: "Each record alone:".to_owned(),
-        columns: vec![
+    Some(Table::new(
+        "Each record alone",
+        vec![
             Column::numbers("record"),
             Column::words("name"),
             Column::numbers("rows"),
             Column::words("alone"),
         ],
-        rows: records
-            .map(|(index, one)| {
-                vec![
-                    (index + 1).to_string(),
-                    one.name.clone(),
-                    one.record.rows.to_string(),
-                    one.alone
-                        .as_ref()
-                        .map_or_else(|| one.why_not_alone.clone(), alone),
-                ]
-            })
-            .collect(),
-    })
+        records.map(|(index, one)| {
+            vec![
+                (index + 1).to_string(),
+                one.name.clone(),
+                one.record.rows.to_string(),
+                one.alone
+                    .as_ref()
+                    .map_or_else(|| one.why_not_alone.clone(), alone),
+            ]
+        }),
+    ))
 }
 
 /// The answer of a record alone, in a few words.

@@ -3,10 +3,10 @@
 use gyrocal_record::printable_line;
 use gyrocal_statistics::format::percent;
 
-use crate::Block;
+use crate::files::few;
 use crate::format::{counted, tested};
-use crate::screen::few;
 use gyrocal_answer::{Answer, Finding, FindingKind, ResidualVerdict, SetupProblem, Verdict};
+use gyrocal_document::{List, Words};
 
 /// Records that are named.
 const RECORDS_SHOWN: usize = 4;
@@ -124,9 +124,11 @@ fn low_power(result: &Answer) -> String {
 
 /// Gross errors of the set-up, as a list; `None` if there are none.
 #[must_use]
-pub fn setup(problems: &[SetupProblem]) -> Option<Block> {
-    (!problems.is_empty()).then(|| Block::List {
-        title: "Errors of the set-up:".to_owned(),
-        entries: problems.iter().map(SetupProblem::text).collect(),
+pub fn setup(problems: &[SetupProblem]) -> Option<Words> {
+    (!problems.is_empty()).then(|| {
+        Words::List(List {
+            title: "Errors of the set-up".to_owned(),
+            entries: problems.iter().map(SetupProblem::text).collect(),
+        })
     })
 }

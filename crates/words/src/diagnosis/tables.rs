@@ -6,10 +6,10 @@ use gyrocal_statistics::format::{self, p_cell};
 use super::catalogue::is_correlation;
 use super::findings::{likelihood, value};
 use crate::format::{short, with_sigma};
-use crate::{Block, Column, Table};
 use gyrocal_answer::{
     Answer, CoefficientEstimate, Coefficients, Finding, FindingKind, Gain, NoiseLevel, Residuals,
 };
+use gyrocal_document::{Column, Table, Words};
 
 /// Rows of the ranking that are shown.
 const TOP: usize = 12;
@@ -18,7 +18,7 @@ const TOP: usize = 12;
 const UNDETERMINED: f64 = 100.0;
 
 /// All tables.
-pub(super) fn all(result: &Answer) -> impl Iterator<Item = Block> {
+pub(super) fn all(result: &Answer) -> impl Iterator<Item = Words> {
     let tables = [
         findings(result),
         result.coefficients.as_ref().and_then(coefficients),
@@ -30,7 +30,7 @@ pub(super) fn all(result: &Answer) -> impl Iterator<Item = Block> {
         result.gain.as_ref().map(shifts),
         noise(result),
     ];
-    tables.into_iter().flatten().map(Block::Table)
+    tables.into_iter().flatten().map(Words::Table)
 }
 
 fn findings(result: &Answer) -> Option<Table> {
@@ -69,11 +69,7 @@ fn findings(result: &Answer) -> Option<Table> {
             rows.push(vec![effect, name, value, unit, z, p, gain]);
         }
     }
-    (!rows.is_empty()).then(|| Table {
-        title: "Findings:".to_owned(),
-        columns,
-        rows,
-    })
+    (!rows.is_empty()).then(|| Table::new("Findings", columns, rows))
 }
 
 /// The coefficients of the extended model; `None` if no effect was accepted.
@@ -95,19 +91,18 @@ fn coefficients(shown: &Coefficients) -> Option<Table> {
             nominal.unit.clone(),
         ]
     });
-    Some(Table {
-        title: "Drift coefficients, noise as estimated; the 95 % interval is over all members of the confidence sets, \
-                weighted by their likelihoods:"
-            .to_owned(),
-        columns: vec![
+    Some(Table::new(
+        "Drift coefficients, noise as estimated; the 95 % interval is over all members of the confidence sets, \
+                weighted by their likelihoods",
+        vec![
             Column::words("coefficient"),
             Column::numbers("nominal model"),
             Column::numbers("extended model"),
             Column::numbers("95 % interval"),
             Column::words("unit"),
         ],
-        rows: rows.collect(),
-    })
+        rows,
+    ))
 }
 
 /// Gain of a cause; effects of noise and filter have none.
@@ -135,7 +130,7 @@ fn residuals(shown: &Residuals, duration_h: f64) -> Table {
             found.ljung_box, found.degrees_of_freedom
         )
     });
-    let mut rows = Vec::new();
+    let mut rows: Vec<Vec<String>> = Vec::new();
     let mut row = |name: String, cells: [String; 3]| {
         rows.push(core::iter::once(name).chain(cells).collect());
     };
@@ -176,11 +171,11 @@ fn residuals(shown: &Residuals, duration_h: f64) -> Table {
             against.p_value.map(p_cell),
         );
     }
-    Table {
-        title: format!("Residuals of the nominal model{nis}{ljung_box}:"),
-        columns: by_axis(),
+    Table::new(
+        &format!("Residuals of the nominal model{nis}{ljung_box}"),
+        by_axis(),
         rows,
-    }
+    )
 }
 
 fn ranking(result: &Answer) -> Option<Table> {
@@ -188,19 +183,16 @@ fn ranking(result: &Answer) -> Option<Table> {
     let threshold = result.threshold.map_or_else(String::new, |threshold| {
         format!("; detection threshold {threshold:.1}")
     });
-    (!all.is_empty()).then(|| Table {
-        title: format!(
+    (!all.is_empty()).then(|| Table::new(&format!(
             "Top {} of {} hypotheses, score statistic (chi-square, penalised for the search over \
-             onset or time constant){threshold}:",
+             onset or time constant){threshold}",
             all.len().min(TOP),
             all.len()
-        ),
-        columns: vec![
+        ), vec![
             Column::words("effect"),
             Column::numbers("statistic"),
             Column::words(""),
-        ],
-        rows: all
+        ], all
             .iter()
             .take(TOP)
             .map(|ranked| {
@@ -209,9 +201,7 @@ fn ranking(result: &Answer) -> Option<Table> {
                     format!("{:.1}", ranked.statistic),
                     role(result, &ranked.effect),
                 ]
-            })
-            .collect(),
-    })
+            })))
 }
 
 /// Role of a ranked effect in the answer.
@@ -237,19 +227,19 @@ fn shifts(gain: &Gain) -> Table {
             shift.unit.clone(),
         ]
     });
-    Table {
-        title: format!(
-            "Coefficient changes with {} in the model:",
+    Table::new(
+        &format!(
+            "Coefficient changes with {} in the model",
             gain.effects.join(", ")
         ),
-        columns: vec![
+        vec![
             Column::words("coefficient"),
             Column::numbers("change"),
             Column::numbers("in sigmas"),
             Column::words("unit"),
         ],
-        rows: rows.collect(),
-    }
+        rows,
+    )
 }
 
 fn noise(result: &Answer) -> Option<Table> {
@@ -277,12 +267,12 @@ fn noise(result: &Answer) -> Option<Table> {
         true => "; no row for the gyros, as the noise of the accelerometers is correlated",
         false => "",
     };
-    (!result.noise.is_empty()).then(|| Table {
-        title: format!("Estimated / declared noise (95 % CI), {model}{of_gyros}:"),
-        columns: by_axis(),
-        rows: core::iter::once(row("accelerometers", "accel_"))
-            .chain(gyros)
-            .collect(),
+    (!result.noise.is_empty()).then(|| {
+        Table::new(
+            &format!("Estimated / declared noise (95 % CI), {model}{of_gyros}"),
+            by_axis(),
+            core::iter::once(row("accelerometers", "accel_")).chain(gyros),
+        )
     })
 }
 

@@ -1,0 +1,121 @@
+//! Pieces of a section that are read.
+
+use serde::Serialize;
+
+/// A piece of a document that is read: of a section, or of an answer in words.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Words {
+    /// Sentences.
+    Paragraph(String),
+    /// One entry of a numbered list, with paragraphs below its title.
+    Entry(Entry),
+    /// A list with a title.
+    List(List),
+    /// A table with a title.
+    Table(Table),
+    /// A command to copy.
+    Command(String),
+}
+
+/// One entry of a numbered list.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Entry {
+    /// Its number.
+    pub number: usize,
+    /// Its title.
+    pub title: String,
+    /// Its text.
+    pub paragraphs: Vec<String>,
+}
+
+/// A list.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct List {
+    /// Its title, without a colon; may be empty.
+    pub title: String,
+    /// Its entries.
+    pub entries: Vec<String>,
+}
+
+/// A table.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Table {
+    /// Its title, without a colon; may be empty.
+    pub title: String,
+    /// Its columns.
+    pub columns: Vec<Column>,
+    /// Its rows, each with one cell for every column.
+    pub rows: Vec<Vec<Cell>>,
+}
+
+impl Table {
+    /// A table of plain cells.
+    #[must_use]
+    pub fn new<Row>(title: &str, columns: Vec<Column>, rows: impl IntoIterator<Item = Row>) -> Self
+    where
+        Row: IntoIterator<Item = String>,
+    {
+        let rows = rows.into_iter();
+        Self {
+            title: title.to_owned(),
+            columns,
+            rows: rows
+                .map(|row| row.into_iter().map(Cell::from).collect())
+                .collect(),
+        }
+    }
+}
+
+/// A column of a table.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Column {
+    /// Its head, with the unit where all cells have one.
+    pub head: String,
+    /// Whether its cells are numbers, to be aligned at the right.
+    pub is_number: bool,
+}
+
+impl Column {
+    /// A column of words.
+    #[must_use]
+    pub fn words(head: &str) -> Self {
+        Self {
+            head: head.to_owned(),
+            is_number: false,
+        }
+    }
+
+    /// A column of numbers.
+    #[must_use]
+    pub fn numbers(head: &str) -> Self {
+        Self {
+            head: head.to_owned(),
+            is_number: true,
+        }
+    }
+}
+
+/// A cell of a table.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Cell {
+    /// Its text.
+    pub text: String,
+    /// Whether it is to be noticed.
+    pub strong: bool,
+}
+
+impl From<String> for Cell {
+    fn from(text: String) -> Self {
+        Self {
+            text,
+            strong: false,
+        }
+    }
+}
+
+impl From<&str> for Cell {
+    fn from(text: &str) -> Self {
+        Self::from(text.to_owned())
+    }
+}

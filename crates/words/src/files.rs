@@ -1,0 +1,81 @@
+//! The files of a result as arguments of commands, and names in short.
+
+use gyrocal_record::{Input, InputRole, shell_quoted};
+
+/// `RECORD --bench BENCH` of the first two inputs of a result, as a shell reads them.
+#[must_use]
+pub fn record_and_bench(inputs: &[Input]) -> String {
+    let path = |place: usize, otherwise: &str| {
+        inputs
+            .get(place)
+            .map_or_else(|| otherwise.to_owned(), |input| shell_quoted(&input.path))
+    };
+    format!(
+        "{} --bench {}",
+        path(0, "RECORD.csv"),
+        path(1, "BENCH.toml")
+    )
+}
+
+/// Records, bench files, axes of strapdown units and the map of columns as arguments of a command, as a shell
+/// reads them. A bench file of all records is named once.
+#[must_use]
+pub fn command_files<'a>(inputs: impl Iterator<Item = (InputRole, &'a str)> + Clone) -> String {
+    let of = |role: InputRole| -> Vec<String> {
+        let own = inputs.clone().filter(|(other, _)| *other == role);
+        own.map(|(_, path)| shell_quoted(path)).collect()
+    };
+    let mut benches = of(InputRole::Bench);
+    if benches.windows(2).all(|pair| pair[0] == pair[1]) {
+        benches.truncate(1);
+    }
+    let options = [
+        ("bench", benches),
+        ("gyro-axes", of(InputRole::GyroAxes)),
+        ("columns", of(InputRole::Columns)),
+    ];
+    let mut command = of(InputRole::Record).join(" ");
+    for (option, paths) in options {
+        for path in paths {
+            command = format!("{command} --{option} {path}");
+        }
+    }
+    command
+}
+
+/// The files of a result as those of [`command_files`]; `None` of a result that does not say what its files
+/// are.
+#[must_use]
+pub fn input_files(inputs: &[Input]) -> Option<String> {
+    let known = inputs
+        .iter()
+        .filter_map(|input| Some((input.role?, input.path.as_str())));
+    let has_record = known.clone().any(|(role, _)| role == InputRole::Record);
+    has_record.then(|| command_files(known))
+}
+
+/// The same of the first record alone.
+#[must_use]
+pub fn first_input_files(inputs: &[Input]) -> Option<String> {
+    let mut seen: Vec<InputRole> = Vec::new();
+    let first: Vec<Input> = inputs
+        .iter()
+        .filter(|input| {
+            let role = input.role.filter(|role| !seen.contains(role));
+            seen.extend(role);
+            role.is_some()
+        })
+        .cloned()
+        .collect();
+    input_files(&first)
+}
+
+/// The first few of several names, and how many more there are.
+#[must_use]
+pub fn few(names: &[&str], shown: usize) -> String {
+    let first = names[..names.len().min(shown)].join(", ");
+    match names.len().saturating_sub(shown) {
+        0 => first,
+        more => format!("{first} and {more} more"),
+    }
+}
