@@ -30,7 +30,7 @@ pub(crate) const DATA: f64 = 1.375;
 pub(crate) const LEGEND_LINE: f64 = 2.0;
 
 /// Opacity of confidence bands.
-pub(crate) const BAND_OPACITY: f64 = 0.35;
+pub(crate) const BAND_OPACITY: f64 = 0.22;
 
 /// A colour: red, green, blue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -139,6 +139,7 @@ pub(super) fn residual(title: String, series: &RecordSeries, whole: bool) -> Cha
     Chart {
         caption: "The band has the estimated noise of the sensor, not the declared one.".to_owned(),
         quantity: "residual".to_owned(),
+        cut_extremes: true,
         ..chart(title, &time, series.outputs.iter().map(panel).collect())
     }
 }
