@@ -19,13 +19,13 @@ impl Picture for Sourced {
 }
 
 /// The charts, bars and estimates of a page as pictures, each with the name of its section, and with a number
-/// where a section has several. Below its caption each has name and verdict of the part.
+/// where a section has several. Below its caption each has the title of its section, and name and verdict of the part.
 #[must_use]
 pub fn pictures(part: Part) -> Vec<(String, Box<dyn Picture>)> {
     let mut pictures: Vec<(String, Box<dyn Picture>)> = Vec::new();
-    let source = format!("{}: {}.", part.name, part.summary.headline);
     for section in part.sections {
         let title = section.title;
+        let source = format!("{title}: {}. {}.", part.name, part.summary.headline);
         let drawn = section.items.into_iter();
         let drawn = drawn.filter_map(|item| picture(item, &title));
         for (place, picture) in drawn.enumerate() {

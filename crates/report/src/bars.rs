@@ -10,7 +10,7 @@ use crate::number::short;
 use crate::page::Bars;
 use crate::picture::Picture;
 use crate::span::Span;
-use crate::style::{BELOW, BLACK, BODY, GREY, HAIR, INK, SMALL, THIN, colour};
+use crate::style::{BELOW, BLACK, BODY, GREY, HAIR, INK, SMALL, THIN, WHITE, colour};
 use crate::text;
 
 /// Height of a bar with its gap and of the heading of a group, px.
@@ -76,9 +76,9 @@ impl Bars {
             TextStyle::new(SMALL, Align::Middle).colour(INK),
         );
         let mut y = frame.top;
+        let mut headings = Vec::new();
         for group in &self.groups {
-            let style = TextStyle::new(BODY, Align::Start).bold();
-            canvas.text(&group.label, (body.left, y + 0.5 * HEAD), style);
+            headings.push((&group.label, y + 0.5 * HEAD));
             y += HEAD;
             for bar in &group.bars {
                 let middle = y + 0.5 * PITCH;
@@ -109,6 +109,14 @@ impl Bars {
             let x = x_of(value);
             let style = LineStyle::dashed(BLACK, THIN);
             canvas.line(&[(x, frame.top), (x, frame.bottom)], style);
+        }
+        for (words, y) in headings {
+            // A white ground keeps grid and threshold out of the letters.
+            let right = body.left + text::width_px(words, BODY, true) + 4.0;
+            let half = 0.5 * HEAD - 3.0;
+            canvas.rect((body.left, y - half), (right, y + half), WHITE, 1.0);
+            let style = TextStyle::new(BODY, Align::Start).bold();
+            canvas.text(words, (body.left, y), style);
         }
     }
 }

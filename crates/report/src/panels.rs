@@ -18,8 +18,8 @@ use crate::text;
 const LEAST_PX: f64 = 150.0;
 
 /// Room of a tick along the abscissa and the ordinate, px: an axis has as many as fit.
-const TICK_PX: f64 = 70.0;
-const ROW_PX: f64 = 40.0;
+const TICK_PX: f64 = 50.0;
+const ROW_PX: f64 = 32.0;
 
 /// Most of a bar's width, px.
 const BAR_PX: f64 = 8.0;

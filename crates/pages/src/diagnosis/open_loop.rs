@@ -73,9 +73,7 @@ fn simulations(
     });
     Chart {
         title: "Specific force, measured and simulated".to_owned(),
-        caption: "Over days the lines coincide at this scale; drag over a part to see them apart. Values \
-                  below the pointer stand above each panel."
-            .to_owned(),
+        caption: "Over days the lines coincide at this scale.".to_owned(),
         abscissa: "time from the first row".to_owned(),
         abscissa_unit: time.unit.to_owned(),
         quantity: "specific force".to_owned(),

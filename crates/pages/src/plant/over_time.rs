@@ -97,9 +97,7 @@ fn simulation(name: &str, series: &RecordSeries) -> Chart {
         )
     };
     Chart {
-        caption: "Where lines coincide at this scale, drag over a part to see them apart. Values below the \
-                  pointer stand above each panel."
-            .to_owned(),
+        caption: "Lines may coincide at this scale.".to_owned(),
         quantity: "output".to_owned(),
         ..chart(
             of_record(name, "Outputs, measured and simulated"),
