@@ -1,7 +1,6 @@
 //! `gyrocal diagnose`: deviations of a record from the model, and their causes.
 
 mod failed;
-mod figures;
 mod several;
 
 use std::path::{Path, PathBuf};
@@ -19,8 +18,7 @@ use gyrocal_record::{Bench, InputRole, Outputs, printable_path};
 use crate::layout::layout;
 use crate::numbers::probability;
 use crate::outputs::{self, manifest_of, same_file};
-use crate::page;
-use crate::pictures;
+use crate::page::{self, Views};
 use crate::progress::Progress;
 use crate::{Failure, Reply, exit, gyro_axes, records};
 pub use failed::NotDiagnosed;
@@ -70,10 +68,8 @@ pub(crate) struct DiagnoseArguments {
         requires = "gyro_axes"
     )]
     validate_gyro_axes: Option<PathBuf>,
-    #[arg(long, value_name = "DIR", help = pictures::HELP)]
-    figures: Option<PathBuf>,
-    #[arg(long, value_name = "OUT.html", help = page::HELP)]
-    report: Option<PathBuf>,
+    #[command(flatten)]
+    views: Views,
     /// Also test these effects, which are not in the default set: gyro_xy.axis_misalignment,
     /// gyro_x.magnetic.
     #[arg(long, value_name = "ID,ID", value_delimiter = ',')]
@@ -140,13 +136,6 @@ impl DiagnoseArguments {
     }
 }
 
-/// A diagnosis with its inputs.
-struct DiagnosisRun<'a> {
-    path: &'a Path,
-    bench: &'a Bench,
-    diagnosis: Diagnosis<'a>,
-}
-
 /// Runs the command; returns the text for stdout.
 pub(crate) fn run(arguments: &DiagnoseArguments) -> Result<Reply, Failure> {
     let inputs = checked_inputs(arguments)?;
@@ -199,14 +188,7 @@ pub(crate) fn run(arguments: &DiagnoseArguments) -> Result<Reply, Failure> {
     }
     drop(progress);
     tracing::info!(verdict = ?diagnosis.result.verdict, "diagnosed");
-    answer(
-        arguments,
-        &DiagnosisRun {
-            path: record,
-            bench: &bench,
-            diagnosis,
-        },
-    )
+    answer(arguments, record, &bench, &diagnosis)
 }
 
 /// The files that are read. Arguments that contradict each other are refused before that.
@@ -226,10 +208,9 @@ fn checked_inputs(arguments: &DiagnoseArguments) -> Result<Vec<(InputRole, &Path
     outputs::check(
         &inputs,
         arguments.json.as_deref(),
-        arguments.figures.as_deref(),
+        arguments.views.figures(),
     )?;
     let json = ("--json", arguments.json.as_deref());
-    let (report, figures) = (arguments.report.as_deref(), arguments.figures.as_deref());
     let findings = arguments.findings.as_deref();
     let coefficients = arguments.coefficients.as_deref();
     let others = [
@@ -237,8 +218,8 @@ fn checked_inputs(arguments: &DiagnoseArguments) -> Result<Vec<(InputRole, &Path
         ("--findings", findings),
         ("--coefficients", coefficients),
     ];
-    page::check(&inputs, &others, report, figures)?;
-    outputs::refuse_unwritable(&[findings, coefficients], figures)?;
+    arguments.views.check(&inputs, &others)?;
+    outputs::refuse_unwritable(&[findings, coefficients], arguments.views.figures())?;
     if let Some(later) = &arguments.validate
         && arguments
             .records
@@ -271,7 +252,7 @@ fn stopped(
         layout(&gyrocal_words::diagnosis(&result)),
     );
     let mut outputs = Outputs::new();
-    if let Some(path) = &arguments.report {
+    if let Some(path) = arguments.views.report() {
         page::stage(path, vec![of_result(&result)], &mut outputs)?;
         answer.wrote(path, page::WHAT);
     }
@@ -287,20 +268,22 @@ fn stopped(
 }
 
 /// Writes all outputs, and lays out the words.
-fn answer(arguments: &DiagnoseArguments, run: &DiagnosisRun<'_>) -> Result<Reply, Failure> {
-    let result = &run.diagnosis.result;
+fn answer(
+    arguments: &DiagnoseArguments,
+    record: &Path,
+    bench: &Bench,
+    diagnosis: &Diagnosis<'_>,
+) -> Result<Reply, Failure> {
+    let result = &diagnosis.result;
     let mut answer = Reply::of(
         gyrocal_words::first_screen(result),
         layout(&gyrocal_words::diagnosis(result)),
     );
     let mut outputs = Outputs::new();
-    if let Some(folder) = &arguments.figures {
-        answer.wrote(folder, &figures::stage(run, folder, &mut outputs)?);
-    }
-    if let Some(path) = &arguments.report {
-        let part = page::part(run.path, of_diagnosis(&run.diagnosis, run.bench))?;
-        page::stage(path, vec![part], &mut outputs)?;
-        answer.wrote(path, page::WHAT);
+    if arguments.views.are_asked() {
+        let part = page::part(record, of_diagnosis(diagnosis, bench))?;
+        let views = &arguments.views;
+        views.stage(record, part, &mut outputs, &mut answer)?;
     }
     if let Some(path) = &arguments.json {
         outputs::stage_answer(path, result, &mut outputs)?;

@@ -44,7 +44,7 @@ pub(crate) fn part(of: &Path, part: Result<Part, PageError>) -> Result<Part, Fai
     part.map_err(|reason| Failure::Work(miette!("{}: no report: {reason}", of.display())))
 }
 
-/// Files to look at, of a command whose pictures are the charts of its report.
+/// Files to look at: the report, and its charts as pictures.
 #[derive(Debug, Default, Args)]
 pub(crate) struct Views {
     #[arg(long, value_name = "OUT.html", help = HELP)]
@@ -88,12 +88,25 @@ impl Views {
         outputs: &mut Outputs,
         answer: &mut Reply,
     ) -> Result<(), Failure> {
+        let drawn = |parts: &[Part]| parts.iter().cloned().flat_map(charts).collect();
+        self.stage_parts(of, vec![part], drawn, outputs, answer)
+    }
+
+    /// Stages a report of several parts and the pictures that are drawn of them, and tells of both.
+    pub(crate) fn stage_parts(
+        &self,
+        of: &Path,
+        parts: Vec<Part>,
+        drawn: impl FnOnce(&[Part]) -> Vec<pictures::Named>,
+        outputs: &mut Outputs,
+        answer: &mut Reply,
+    ) -> Result<(), Failure> {
         if let Some(folder) = &self.figures {
-            let drawn = charts(part.clone());
+            let drawn = drawn(&parts);
             answer.wrote(folder, &pictures::stage(of, &drawn, folder, outputs)?);
         }
         if let Some(path) = &self.report {
-            stage(path, vec![part], outputs)?;
+            stage(path, parts, outputs)?;
             answer.wrote(path, WHAT);
         }
         Ok(())

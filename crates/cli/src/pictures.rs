@@ -29,7 +29,8 @@ const FORMS: &str = if cfg!(feature = "png") {
 #[cfg(feature = "png")]
 const WIDTH_PX: u32 = 1200;
 
-pub(crate) use gyrocal_pages::NamedPicture as Named;
+/// A picture with the name of its files.
+pub(crate) type Named = (String, Box<dyn Picture>);
 
 /// Whether a file has the name of a picture.
 pub(crate) fn is_one(path: &Path) -> bool {
@@ -41,7 +42,7 @@ pub(crate) fn is_one(path: &Path) -> bool {
 /// the folder, for stdout.
 pub(crate) fn stage(
     of: &Path,
-    pictures: &[(impl AsRef<str>, Box<dyn Picture>)],
+    pictures: &[Named],
     folder: &Path,
     outputs: &mut Outputs,
 ) -> Result<String, Failure> {
@@ -54,7 +55,6 @@ pub(crate) fn stage(
     })?;
     let mut names = Vec::new();
     for (name, picture) in pictures {
-        let name = name.as_ref();
         let svg = match picture.to_svg() {
             Ok(svg) => svg,
             Err(reason) => {
@@ -62,7 +62,7 @@ pub(crate) fn stage(
                 continue;
             }
         };
-        names.push(name);
+        names.push(name.as_str());
         outputs.stage(&folder.join(name).with_extension("svg"), svg.as_bytes())?;
         #[cfg(feature = "png")]
         {

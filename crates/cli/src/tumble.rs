@@ -1,7 +1,6 @@
 //! `gyrocal tumble`: multi-position test of gyros from a log with static stops in many attitudes.
 
 mod few;
-mod figures;
 mod many;
 mod screen;
 mod sensors;
@@ -25,8 +24,7 @@ use gyrocal_record::{Outputs, printable_path};
 use crate::measured::{interval, unusable};
 use crate::numbers::{positive, probability};
 use crate::outputs::{self, manifest};
-use crate::page;
-use crate::pictures;
+use crate::page::Views;
 use crate::{Failure, Reply};
 
 /// Multi-position test: fit the drift law to static stops and find missing terms.
@@ -63,10 +61,8 @@ pub(crate) struct TumbleArguments {
     /// Seed of the permutations.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    #[arg(long, value_name = "DIR", help = pictures::HELP)]
-    figures: Option<PathBuf>,
-    #[arg(long, value_name = "OUT.html", help = page::HELP)]
-    report: Option<PathBuf>,
+    #[command(flatten)]
+    views: Views,
     /// Write the result for programs (JSON).
     #[arg(long, value_name = "OUT.json")]
     json: Option<PathBuf>,
@@ -86,18 +82,16 @@ pub(crate) fn run(arguments: &TumbleArguments) -> Result<Reply, Failure> {
     outputs::check(
         &inputs,
         arguments.json.as_deref(),
-        arguments.figures.as_deref(),
+        arguments.views.figures(),
     )?;
     let json = ("--json", arguments.json.as_deref());
-    let (page, figures) = (arguments.report.as_deref(), arguments.figures.as_deref());
-    page::check(&inputs, &[json], page, figures)?;
+    arguments.views.check(&inputs, &[json])?;
     if arguments.logs.len() > 1 && !arguments.stop.is_empty() {
         return Err(Failure::Usage(
             "--stop gives stops of one log; with several logs the stops of each are detected"
                 .to_owned(),
         ));
     }
-    let log = &arguments.logs[0];
     let (prepared, report, notes) = work(arguments)?;
     tracing::info!(?report, "tested");
     let mut outputs = Outputs::new();
@@ -117,24 +111,25 @@ pub(crate) fn run(arguments: &TumbleArguments) -> Result<Reply, Failure> {
     not_identifiable(&mut text, &prepared);
     let mut answer = Reply::of(screen::first(arguments, &prepared, &report), text);
     // The folder of pictures first: the result for programs may go there too.
-    if let Some(folder) = &arguments.figures {
-        match &report {
-            Report::Many(report) => {
-                let pictures = figures::pictures(log, &prepared, report);
-                answer.wrote(
-                    folder,
-                    &pictures::stage(log, &pictures, folder, &mut outputs)?,
-                );
-            }
-            Report::Few(_) => answer.wrote(
-                folder,
-                "no pictures: they are made of tests with many stops",
-            ),
+    match &report {
+        Report::Many(report) if arguments.views.are_asked() => {
+            let manifest = manifest(MODEL_HASH, arguments.seed, &inputs)?;
+            let part = of_tumble(&manifest, &prepared, report);
+            let (log, views) = (&arguments.logs[0], &arguments.views);
+            views.stage(log, part, &mut outputs, &mut answer)?;
         }
-    }
-    if let Some(path) = &arguments.report {
-        let what = page_of(path, arguments, (&prepared, &report), &inputs, &mut outputs)?;
-        answer.wrote(path, what);
+        Report::Many(_) => (),
+        Report::Few(_) => {
+            let views = [
+                (arguments.views.figures(), "no pictures: they are"),
+                (arguments.views.report(), "no report: it is"),
+            ];
+            for (path, none) in views {
+                if let Some(path) = path {
+                    answer.wrote(path, &format!("{none} made of tests with many stops"));
+                }
+            }
+        }
     }
     if let Some(path) = &arguments.json {
         let manifest = manifest(MODEL_HASH, arguments.seed, &inputs)?;
@@ -149,22 +144,6 @@ pub(crate) fn run(arguments: &TumbleArguments) -> Result<Reply, Failure> {
     }
     outputs.commit()?;
     Ok(answer)
-}
-
-/// Stages the report; returns what the file holds. A test with few stops has none.
-fn page_of(
-    path: &Path,
-    arguments: &TumbleArguments,
-    (prepared, report): (&PreparedTest, &Report),
-    inputs: &[&Path],
-    outputs: &mut Outputs,
-) -> Result<&'static str, Failure> {
-    let Report::Many(report) = report else {
-        return Ok("no report: it is made of tests with many stops");
-    };
-    let manifest = manifest(MODEL_HASH, arguments.seed, inputs)?;
-    page::stage(path, vec![of_tumble(&manifest, prepared, report)], outputs)?;
-    Ok(page::WHAT)
 }
 
 fn named(arguments: &TumbleArguments) -> String {

@@ -1,4 +1,4 @@
-//! Series behind the pictures of a diagnosis: open-loop simulations, spectra and autocorrelations of
+//! Series behind the charts of a diagnosis: open-loop simulations, spectra and autocorrelations of
 //! the innovations.
 
 use gyrocal_calibration::{CalibrationError, FittedPlatform};
@@ -83,22 +83,6 @@ pub struct ChannelCorrelation {
 }
 
 impl Diagnosis<'_> {
-    /// Open-loop simulations of the nominal and of the extended model.
-    ///
-    /// # Errors
-    /// As [`FittedPlatform::free_run_g`].
-    pub fn open_loop(
-        &self,
-        record: &Record,
-    ) -> Result<(OpenLoopSimulation, Option<OpenLoopSimulation>), CalibrationError> {
-        let extended = self.extended.as_ref();
-        let extended = extended.map(|fitted| OpenLoopSimulation::new(fitted, record));
-        Ok((
-            OpenLoopSimulation::new(&self.nominal, record)?,
-            extended.transpose()?,
-        ))
-    }
-
     /// Periodograms of the innovations of all axes and models.
     ///
     /// # Errors

@@ -38,7 +38,7 @@ pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
     let write = context.write;
     let mut same = renewed(&docs().join("paper.md"), &page, TOPIC, write)?;
     for (stem, picture) in curves::pictures(&found.records[0])? {
-        let svg = picture.to_svg()?;
+        let svg = picture.to_svg_of(&format!("One record, seed {}.", ways::SHOWN_SEED))?;
         let path = docs().join("pictures/paper").join(stem);
         same &= renewed(&path.with_extension("svg"), &svg, TOPIC, write)?;
         // Only written, together with its SVG.

@@ -18,7 +18,7 @@
 //! | [`of_monte_carlo`] | a calibration over many simulated records |
 //! | [`of_allan`] | Allan deviations of a log |
 //!
-//! [`plant_pictures`] are those of any plant, [`Ranked`] draws the ranking of both.
+//! [`pictures`] are the charts of a part, for files of their own.
 //!
 //! # What it does not do
 //!
@@ -52,8 +52,7 @@ pub use gyrocal_report::page::{Page, Part};
 pub use monte_carlo::of_monte_carlo;
 pub use pictures::pictures;
 pub use plan::of_plan;
-pub use plant::{NamedPicture, of_plant, plant_pictures};
-pub use ranked::Ranked;
+pub use plant::of_plant;
 pub use tumble::of_tumble;
 pub use uncertainty::{of_budget, of_spread};
 

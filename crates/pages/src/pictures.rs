@@ -1,43 +1,65 @@
 //! Pictures of an answer: the charts of its page.
 
-use gyrocal_report::Picture;
 use gyrocal_report::page::{Item, Part};
+use gyrocal_report::{Error, Picture};
+
+/// A picture with the name of what it is of.
+struct Sourced {
+    picture: Box<dyn Picture>,
+    source: String,
+}
+
+impl Picture for Sourced {
+    fn to_svg_of(&self, source: &str) -> Result<String, Error> {
+        self.picture.to_svg_of(match source {
+            "" => &self.source,
+            other => other,
+        })
+    }
+}
 
 /// The charts, bars and estimates of a page as pictures, each with the name of its section, and with a number
-/// where a section has several.
+/// where a section has several. Below its caption each has the title of its section, and name and verdict of the part.
 #[must_use]
 pub fn pictures(part: Part) -> Vec<(String, Box<dyn Picture>)> {
     let mut pictures: Vec<(String, Box<dyn Picture>)> = Vec::new();
     for section in part.sections {
-        let drawn = section.items.into_iter().filter_map(|item| {
-            let named = |title: &mut String| {
-                if title.is_empty() {
-                    title.clone_from(&section.title);
-                }
-            };
-            Some(match item {
-                Item::Chart(mut chart) => {
-                    named(&mut chart.title);
-                    Box::new(chart) as Box<dyn Picture>
-                }
-                Item::Bars(mut bars) => {
-                    named(&mut bars.title);
-                    Box::new(bars)
-                }
-                Item::Estimates(mut estimates) => {
-                    named(&mut estimates.title);
-                    Box::new(estimates)
-                }
-                _ => return None,
-            })
-        });
+        let title = section.title;
+        let source = format!("{title}: {}. {}.", part.name, part.summary.headline);
+        let drawn = section.items.into_iter();
+        let drawn = drawn.filter_map(|item| picture(item, &title));
         for (place, picture) in drawn.enumerate() {
             let name = match place {
                 0 => section.id.clone(),
                 _ => format!("{}-{}", section.id, place + 1),
             };
-            pictures.push((name, picture));
+            let source = source.clone();
+            pictures.push((name, Box::new(Sourced { picture, source })));
         }
     }
     pictures
+}
+
+/// A piece of a section with that title as a picture; `None` of words.
+fn picture(item: Item, section: &str) -> Option<Box<dyn Picture>> {
+    let named = |title: &mut String| {
+        if title.is_empty() {
+            section.clone_into(title);
+        }
+    };
+    Some(match item {
+        Item::Chart(mut chart) => {
+            named(&mut chart.title);
+            Box::new(chart)
+        }
+        Item::Bars(mut bars) => {
+            named(&mut bars.title);
+            Box::new(bars)
+        }
+        Item::Estimates(mut estimates) => {
+            named(&mut estimates.title);
+            Box::new(estimates)
+        }
+        _ => return None,
+    })
 }

@@ -39,11 +39,11 @@ const gyrocalCharts = (() => {
       const y = u.valToPos(level.value, "y", true);
       line(left, y, left + width, y);
     }
-    for (const mark of panel.marks) {
+    for (const [row, mark] of panel.marks.entries()) {
       const x = u.valToPos(mark.value, "x", true);
       line(x, top, x, top + height);
       const room = ctx.measureText(mark.label).width + 4 * scale;
-      ctx.fillText(mark.label, x + room > left + width ? x - room : x + 4 * scale, top + 12 * scale);
+      ctx.fillText(mark.label, x + room > left + width ? x - room : x + 4 * scale, top + (12 + 13 * row) * scale);
     }
     ctx.restore();
   };
@@ -55,7 +55,7 @@ const gyrocalCharts = (() => {
       return chart.logY ? (value === null ? "–" : value.toPrecision(3)) : readable(value, (high - low) / 200);
     };
     const data = [gyrocalData.column(panel.abscissa)];
-    const series = [{ label: chart.abscissa, value: (u, value) => readable(value, (u.scales.x.max - u.scales.x.min) / 500) }];
+    const series = [{ label: panel.abscissaTitle, value: (u, value) => readable(value, (u.scales.x.max - u.scales.x.min) / 500) }];
     const bands = [];
     for (const band of panel.bands) {
       const colour = tint(band.tint);
@@ -97,9 +97,10 @@ const gyrocalCharts = (() => {
 
   const ordinate = (chart, panel) => (u) => {
     const abscissa = gyrocalData.column(panel.abscissa);
-    const first = abscissa[0];
+    const [first, last] = [abscissa[0], abscissa[abscissa.length - 1]];
     // Before its first drawing a plot has no limits yet.
-    const [from, to] = [u.scales.x.min ?? first, u.scales.x.max ?? abscissa[abscissa.length - 1]];
+    const [from, to] = [u.scales.x.min ?? first, u.scales.x.max ?? last];
+    if (panel.half !== null && from <= first && to >= last) return [-panel.half, panel.half];
     const settled = panel.scaleFrom !== null && from <= first ? panel.scaleFrom : from;
     const panels = chart.sameScale ? chart.panels : [panel];
     let [least, most] = [Infinity, -Infinity];
@@ -134,7 +135,7 @@ const gyrocalCharts = (() => {
         y: { distr: chart.logY ? 3 : 1, range: ordinate(chart, panel) },
       },
       axes: [
-        { ...axis(chart.abscissa), size: 26, ...(hasBars && { incrs: [1, 2, 5, 10, 20, 50] }), ...(!chart.logX && { values: minus }) },
+        { ...axis(panel.abscissaTitle), size: 26, ...(hasBars && { incrs: [1, 2, 5, 10, 20, 50] }), ...(!chart.logX && { values: minus }) },
         { ...axis(`${chart.quantity} ${unit}`.trim()), size: room, ...(!chart.logY && { values: minus }) },
       ],
       cursor: { sync: chart.linked ? { key: chart.id, setSeries: false } : undefined, drag: { x: true, y: false }, points: { size: 6 } },

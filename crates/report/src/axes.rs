@@ -4,7 +4,7 @@ use crate::axis::Axis;
 use crate::canvas::{Align, Canvas, LineStyle, TextStyle};
 use crate::geometry::{Point, Rect};
 use crate::polyline;
-use crate::style::{BLUE, BODY, Colour, FAINT, GREY, HAIR, INK, SMALL, THIN};
+use crate::style::{BAND_OPACITY, BODY, Colour, FAINT, GREY, HAIR, INK, SMALL};
 use crate::text;
 
 /// Length of a tick with a label, px.
@@ -52,20 +52,8 @@ impl Axes {
         }
     }
 
-    /// A line through values, with gaps left open.
-    pub(crate) fn line(
-        &self,
-        canvas: &mut Canvas,
-        abscissa: &[f64],
-        values: &[f64],
-        style: LineStyle,
-    ) {
-        let longest = polyline::longest_interval(abscissa);
-        self.line_bridging(canvas, abscissa, values, style, longest);
-    }
-
     /// A line through values that bridges intervals up to a length.
-    pub(crate) fn line_bridging(
+    pub(crate) fn line(
         &self,
         canvas: &mut Canvas,
         abscissa: &[f64],
@@ -79,38 +67,21 @@ impl Axes {
         }
     }
 
-    /// The band between two columns.
+    /// The band between two columns, which bridges intervals up to a length.
     pub(crate) fn band(
         &self,
         canvas: &mut Canvas,
         abscissa: &[f64],
         (lower, upper): (&[f64], &[f64]),
         colour: Colour,
-        opacity: f64,
+        longest: f64,
     ) {
-        let longest = polyline::longest_interval(abscissa);
         let edges = (
             &*self.points(abscissa, lower),
             &*self.points(abscissa, upper),
         );
         for outline in polyline::bands(self.frame, abscissa, edges, longest) {
-            canvas.polygon(&outline, colour, opacity);
-        }
-    }
-
-    /// The band between two ordinates, over the whole width.
-    pub(crate) fn horizontal_band(
-        &self,
-        canvas: &mut Canvas,
-        (lower, upper): (f64, f64),
-        colour: Colour,
-        opacity: f64,
-    ) {
-        let edge = |value| self.y_of(value).clamp(self.frame.top, self.frame.bottom);
-        let (bottom, top) = (edge(lower), edge(upper));
-        if bottom != top {
-            let corner = (self.frame.left, top);
-            canvas.rect(corner, (self.frame.right, bottom), colour, opacity);
+            canvas.polygon(&outline, colour, BAND_OPACITY);
         }
     }
 
@@ -122,26 +93,12 @@ impl Axes {
         }
     }
 
-    /// The line at ordinate zero.
-    pub(crate) fn zero_line(&self, canvas: &mut Canvas) {
-        self.horizontal_line(canvas, 0.0, LineStyle::solid(GREY, HAIR));
-    }
-
     /// A line at an abscissa over the whole height, if it is within the scale.
     pub(crate) fn vertical_line(&self, canvas: &mut Canvas, value: f64, style: LineStyle) {
         let x = self.x_of(value);
         if (self.frame.left..=self.frame.right).contains(&x) {
             canvas.line(&[(x, self.frame.bottom), (x, self.frame.top)], style);
         }
-    }
-
-    /// A dot with a vertical error bar of given half-length; no bar if that is not a number.
-    pub(crate) fn error_bar(&self, canvas: &mut Canvas, (x, y): (f64, f64), half: f64) {
-        if !half.is_nan() {
-            let ends = [self.point(x, y - half), self.point(x, y + half)];
-            canvas.line(&ends, LineStyle::solid(BLUE, THIN));
-        }
-        canvas.disc(self.point(x, y), 2.5, BLUE);
     }
 
     /// A point on the canvas, maybe outside of the frame.

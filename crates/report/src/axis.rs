@@ -3,26 +3,12 @@
 use crate::number::{readable_unit, short, superscript, with_unit};
 use crate::span::Span;
 
-const DAY_S: f64 = 86_400.0;
-/// A time axis ends at its next tick if no more than this fraction of its length is missing.
-const NEARLY: f64 = 0.01;
-
-/// Times since the first one and their span, s.
-pub(crate) fn elapsed(time_s: &[f64]) -> (Vec<f64>, Span) {
-    let origin = time_s.first().copied().unwrap_or(0.0);
-    let elapsed: Vec<f64> = time_s.iter().map(|time| time - origin).collect();
-    let span = Span::of(elapsed.iter().copied());
-    (elapsed, span.unwrap_or(Span { lo: 0.0, hi: 1.0 }).open())
-}
-
 /// One axis: its span, ticks and title.
 #[derive(Clone, Debug)]
 pub(crate) struct Axis {
     lo: f64,
     hi: f64,
     logarithmic: bool,
-    /// Factor from values to the numbers of the labels.
-    pub factor: f64,
     /// Values of labelled ticks, and their labels.
     pub ticks: Vec<(f64, String)>,
     /// Values of ticks without labels.
@@ -37,29 +23,7 @@ impl Axis {
     pub(crate) fn linear(span: Span, quantity: &str, unit: &str, ticks: usize) -> Self {
         let (factor, unit) = readable_unit(unit, span.largest());
         let title = with_unit(quantity, &unit);
-        Self::scaled(span, factor, title, ticks, &[1.0, 2.0, 5.0])
-    }
-
-    /// A linear scale of time since the first sample, labelled in the unit that suits its length.
-    /// Values are in seconds.
-    pub(crate) fn time(span: Span, ticks: usize) -> Self {
-        let (unit_s, unit, steps): (f64, &str, &[f64]) = match span.length() {
-            length if length > 1.5 * DAY_S => (DAY_S, "days", &[1.0, 2.0, 5.0]),
-            length if length > 2.0 * 3600.0 => (3600.0, "hours", &[1.0, 2.0, 3.0, 6.0]),
-            length if length > 120.0 => (60.0, "minutes", &[1.0, 2.0, 5.0]),
-            _ => (1.0, "seconds", &[1.0, 2.0, 5.0]),
-        };
-        let title = format!("time from the first sample [{unit}]");
-        let step_s = unit_s * step(span.length() / unit_s / ticks.max(1) as f64, steps);
-        let next = (span.hi / step_s).ceil() * step_s;
-        // The last sample stands an interval before the full day or hour, which is to be seen.
-        let hi = if next - span.hi < NEARLY * span.length() {
-            next
-        } else {
-            span.hi
-        };
-        let span = Span { hi, ..span };
-        Self::scaled(span, unit_s.recip(), title, ticks, steps)
+        Self::scaled(span, factor, title, ticks)
     }
 
     /// A logarithmic scale; the span must be positive.
@@ -97,23 +61,21 @@ impl Axis {
             lo: span.lo,
             hi: span.hi,
             logarithmic: true,
-            factor: 1.0,
             ticks: labelled,
             minor,
             title: with_unit(quantity, unit),
         }
     }
 
-    /// A linear scale with the given ticks.
-    pub(crate) fn named(span: Span, ticks: Vec<(f64, String)>, title: &str) -> Self {
+    /// A linear scale without ticks and title.
+    pub(crate) fn bare(span: Span) -> Self {
         Self {
             lo: span.lo,
             hi: span.hi,
             logarithmic: false,
-            factor: 1.0,
-            ticks,
+            ticks: Vec::new(),
             minor: Vec::new(),
-            title: title.to_owned(),
+            title: String::new(),
         }
     }
 
@@ -131,9 +93,9 @@ impl Axis {
         }
     }
 
-    fn scaled(span: Span, factor: f64, title: String, ticks: usize, steps: &[f64]) -> Self {
+    fn scaled(span: Span, factor: f64, title: String, ticks: usize) -> Self {
         let (lo, hi) = (span.lo * factor, span.hi * factor);
-        let step = step((hi - lo) / ticks.max(1) as f64, steps);
+        let step = step((hi - lo) / ticks.max(1) as f64);
         let decimals = decimals(step);
         let (first, last) = ((lo / step).ceil() as i64, (hi / step).floor() as i64);
         let ticks = (first..=last)
@@ -146,7 +108,6 @@ impl Axis {
             lo: span.lo,
             hi: span.hi,
             logarithmic: false,
-            factor,
             ticks,
             minor: Vec::new(),
             title,
@@ -154,11 +115,11 @@ impl Axis {
     }
 }
 
-/// The smallest step of the given kind (times a power of ten) that is not below the least.
-fn step(least: f64, kinds: &[f64]) -> f64 {
+/// The smallest round step that is not below the least.
+fn step(least: f64) -> f64 {
     let power = 10f64.powf(least.log10().floor());
-    kinds
-        .iter()
+    [1.0, 2.0, 5.0]
+        .into_iter()
         .map(|kind| kind * power)
         .find(|step| *step >= least * (1.0 - 1e-9))
         .unwrap_or(10.0 * power)
@@ -214,24 +175,6 @@ mod tests {
         let micro = Axis::linear(Span::symmetric(3.1e-5), "residual", "g", 4);
         assert_eq!(labels(&micro), ["−20", "0", "20"]);
         assert_eq!(micro.title, "residual [µg]");
-        let days = Axis::time(
-            Span {
-                lo: 0.0,
-                hi: 3.0 * DAY_S,
-            },
-            4,
-        );
-        assert_eq!(labels(&days), ["0", "1", "2", "3"]);
-        let short = Axis::time(
-            Span {
-                lo: 0.0,
-                hi: 3.0 * DAY_S - 60.0,
-            },
-            4,
-        );
-        assert_eq!(labels(&short), ["0", "1", "2", "3"]);
-        let hours = Axis::time(Span { lo: 0.0, hi: DAY_S }, 5);
-        assert_eq!(labels(&hours), ["0", "6", "12", "18", "24"]);
     }
 
     #[test]

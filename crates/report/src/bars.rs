@@ -1,17 +1,16 @@
-//! Bars and estimates of a page as pictures.
+//! Bars of a page as a picture.
 
 use crate::axis::Axis;
 use crate::canvas::{Align, Canvas, LineStyle, TextStyle};
 use crate::check;
-use crate::comparison::{ComparedEstimate, ComparedQuantity, Comparison};
 use crate::error::Error;
 use crate::figure::{Legend, figure};
 use crate::geometry::Rect;
 use crate::number::short;
-use crate::page::{Bars, Estimates};
+use crate::page::Bars;
 use crate::picture::Picture;
 use crate::span::Span;
-use crate::style::{BELOW, BLACK, BODY, GREY, HAIR, INK, SMALL, THIN, colour};
+use crate::style::{BELOW, BLACK, BODY, GREY, HAIR, INK, SMALL, THIN, WHITE, colour};
 use crate::text;
 
 /// Height of a bar with its gap and of the heading of a group, px.
@@ -22,11 +21,8 @@ const HEAD: f64 = 24.0;
 const NAMES: f64 = 0.4;
 const NOTES: f64 = 0.2;
 
-/// Quantities side by side.
-const IN_A_ROW: usize = 3;
-
 impl Picture for Bars {
-    fn to_svg(&self) -> Result<String, Error> {
+    fn to_svg_of(&self, source: &str) -> Result<String, Error> {
         check::non_empty("the list of groups of bars", &self.groups)?;
         for bar in self.groups.iter().flat_map(|group| &group.bars) {
             check::not_infinite(|| format!("the length of {}", bar.label), &[bar.value])?;
@@ -39,7 +35,7 @@ impl Picture for Bars {
             .collect();
         Ok(figure(
             &self.title,
-            &self.omitted,
+            &[&self.omitted, source],
             &legend,
             height,
             |canvas, body| self.draw(canvas, body),
@@ -80,9 +76,9 @@ impl Bars {
             TextStyle::new(SMALL, Align::Middle).colour(INK),
         );
         let mut y = frame.top;
+        let mut headings = Vec::new();
         for group in &self.groups {
-            let style = TextStyle::new(BODY, Align::Start).bold();
-            canvas.text(&group.label, (body.left, y + 0.5 * HEAD), style);
+            headings.push((&group.label, y + 0.5 * HEAD));
             y += HEAD;
             for bar in &group.bars {
                 let middle = y + 0.5 * PITCH;
@@ -114,42 +110,21 @@ impl Bars {
             let style = LineStyle::dashed(BLACK, THIN);
             canvas.line(&[(x, frame.top), (x, frame.bottom)], style);
         }
-    }
-}
-
-impl Picture for Estimates {
-    fn to_svg(&self) -> Result<String, Error> {
-        let estimators = self.models.iter().map(|(name, _)| name.clone());
-        let quantities = self.rows.iter().map(|row| ComparedQuantity {
-            name: row.name.clone(),
-            unit: row.unit.clone(),
-            reference: None,
-            estimates: row
-                .values
-                .iter()
-                .map(|one| ComparedEstimate {
-                    value: one.value,
-                    sigma: one.sigma,
-                })
-                .collect(),
-        });
-        let comparison = Comparison {
-            title: self.title.clone(),
-            subtitle: String::new(),
-            estimators: estimators.collect(),
-            tints: self.models.iter().map(|(_, tint)| *tint).collect(),
-            quantities: quantities.collect(),
-            columns: IN_A_ROW,
-            reference_label: String::new(),
-        };
-        comparison.to_svg()
+        for (words, y) in headings {
+            // A white ground keeps grid and threshold out of the letters.
+            let right = body.left + text::width_px(words, BODY, true) + 4.0;
+            let half = 0.5 * HEAD - 3.0;
+            canvas.rect((body.left, y - half), (right, y + half), WHITE, 1.0);
+            let style = TextStyle::new(BODY, Align::Start).bold();
+            canvas.text(words, (body.left, y), style);
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::page::{Bar, BarGroup, EstimateRow, Tint, ValueWithSigma};
+    use crate::page::{Bar, BarGroup, Tint};
 
     #[test]
     fn bars_have_names_numbers_and_their_threshold() {
@@ -181,26 +156,5 @@ mod tests {
             assert!(svg.contains(words), "{words}");
         }
         assert!(!svg.contains("NaN"), "{svg}");
-    }
-
-    #[test]
-    fn estimates_are_compared() {
-        let estimates = Estimates {
-            title: "Coefficients".to_owned(),
-            models: vec![("nominal model".to_owned(), Tint::Nominal)],
-            rows: vec![EstimateRow {
-                name: "gyro_x.bias".to_owned(),
-                unit: "deg/h".to_owned(),
-                values: vec![ValueWithSigma {
-                    value: 0.5,
-                    sigma: 0.1,
-                }],
-                note: String::new(),
-                strong: false,
-            }],
-            note_head: String::new(),
-        };
-        let svg = estimates.to_svg().unwrap();
-        assert!(svg.contains("gyro_x.bias") && svg.contains("nominal model"));
     }
 }

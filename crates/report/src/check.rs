@@ -59,16 +59,6 @@ pub(crate) fn finite(what: &str, value: f64) -> Result<(), Error> {
     )
 }
 
-/// A number is finite and above zero.
-pub(crate) fn positive(what: &str, value: f64) -> Result<(), Error> {
-    each(
-        || what.to_owned(),
-        &[value],
-        "a finite number above zero",
-        |value| value.is_finite() && value > 0.0,
-    )
-}
-
 /// A list has an entry.
 pub(crate) fn non_empty<T>(what: &'static str, list: &[T]) -> Result<(), Error> {
     if list.is_empty() {

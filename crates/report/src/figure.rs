@@ -1,12 +1,11 @@
-//! A whole figure: title, subtitle and legend above a body of given height.
+//! A whole figure: title, description and legend above a body of given height.
 
 use crate::canvas::{Align, Canvas, LineStyle, TextStyle};
 use crate::geometry::{Point, Rect};
-use crate::page::Tint;
-use crate::style::{BODY, Colour, INK, INNER_WIDTH, LEGEND_LINE, MARGIN, TITLE, WIDTH, colour};
+use crate::style::{BODY, Colour, INK, INNER_WIDTH, MARGIN, TITLE, WIDTH};
 use crate::text;
 
-/// Height of a line of the title, the subtitle and the legend, px.
+/// Height of a line of the title, the description and the legend, px.
 const TITLE_LINE: f64 = 21.0;
 const BODY_LINE: f64 = 16.0;
 const LEGEND_ROW: f64 = 18.0;
@@ -65,16 +64,17 @@ impl Legend {
     }
 }
 
-/// Draws title, subtitle and legend, then the body of a given height below them.
+/// Draws title, description in paragraphs and legend, then the body of a given height below them.
 pub(crate) fn figure(
     title: &str,
-    subtitle: &str,
+    description: &[&str],
     legend: &[Legend],
     body_px: f64,
     body: impl FnOnce(&mut Canvas, Rect),
 ) -> String {
     let title_lines = text::wrap(title, TITLE, true, INNER_WIDTH);
-    let subtitle_lines = text::wrap(subtitle, BODY, false, INNER_WIDTH);
+    let paragraphs = description.iter();
+    let paragraphs = paragraphs.flat_map(|words| text::wrap(words, BODY, false, INNER_WIDTH));
     let places = legend_places(legend);
     let legend_rows = places.last().map_or(0.0, |place| place.1 + 1.0);
     let mut canvas = Canvas::default();
@@ -84,9 +84,9 @@ pub(crate) fn figure(
         canvas.text(line, (MARGIN, y + 0.4 * TITLE_LINE), style);
         y += TITLE_LINE;
     }
-    for line in &subtitle_lines {
+    for line in paragraphs {
         let style = TextStyle::new(BODY, Align::Start).colour(INK);
-        canvas.text(line, (MARGIN, y + 0.5 * BODY_LINE), style);
+        canvas.text(&line, (MARGIN, y + 0.5 * BODY_LINE), style);
         y += BODY_LINE;
     }
     for (entry, (x, row)) in legend.iter().zip(&places) {
@@ -119,24 +119,4 @@ fn legend_places(legend: &[Legend]) -> Vec<(f64, f64)> {
             place
         })
         .collect()
-}
-
-/// Legend of series of models: one entry for each model, after what the series are.
-pub(crate) fn model_legend(tints: impl Iterator<Item = Tint>, what: &str) -> Vec<Legend> {
-    let mut legend = Vec::new();
-    let mut shown = Vec::new();
-    for tint in tints {
-        if shown.contains(&tint) {
-            continue;
-        }
-        shown.push(tint);
-        let label = match tint {
-            Tint::Nominal => format!("{what}, nominal model"),
-            Tint::Extended => format!("{what}, extended model"),
-            _ => what.to_owned(),
-        };
-        let style = LineStyle::solid(colour(tint), LEGEND_LINE);
-        legend.push(Legend::line(style, label));
-    }
-    legend
 }

@@ -2,43 +2,40 @@
 //!
 //! [`page`] makes a whole answer one HTML file; the rest is about pictures.
 //!
-//! Each picture is a structure of numbers and labels, documented with units, that implements
-//! [`Picture`]. Titles, names of channels and quantities, and units come from the caller; the
-//! picture adds the legend, confidence bands and the number of values.
+//! Charts, bars and estimates are plain data, documented with units. Each is a [`Picture`] and a piece of a
+//! page: what a picture shows is what the page shows. Titles, names of quantities and units come from the caller.
 //!
-//! | picture | shows |
+//! | data | shows |
 //! |---|---|
-//! | [`Convergence`] | estimates against time with their bands |
-//! | [`Residuals`] | residuals of one or two models with the noise band |
-//! | [`OpenLoop`] | measurement and open-loop simulation, and their difference |
-//! | [`Spectrum`] | periodograms with detection threshold and marked frequencies |
-//! | [`Correlation`] | autocorrelations with the band of white noise |
-//! | [`ResidualVsCovariate`] | binned means of residuals against covariates |
-//! | [`Ranking`] | effects by test statistic, with detection threshold |
-//! | [`CrossValidation`] | gain of an extended model on held-out data and on a later record |
-//! | [`TermContributions`] | partial residuals of single terms of a law |
-//! | [`Comparison`] | estimates of several estimators with error bars |
-//! | [`page::Chart`], [`page::Bars`], [`page::Estimates`] | the same as on a page |
+//! | [`page::Chart`] | panels of lines, points and bars over an abscissa, with bands, levels and marks |
+//! | [`page::Bars`] | horizontal bars in groups, with a threshold |
+//! | [`page::Estimates`] | estimates of several models side by side, with their intervals |
 //!
 //! # Example
 //!
 //! ```
-//! use gyrocal_report::{Picture, ResidualChannel, Residuals};
+//! use gyrocal_report::Picture;
+//! use gyrocal_report::page::{Chart, Line, LineKind, Panel, Tint};
 //!
-//! let picture = Residuals {
+//! let picture = Chart {
 //!     title: "Residuals are white".to_owned(),
-//!     subtitle: String::new(),
-//!     time_s: vec![0.0, 60.0, 120.0],
-//!     channels: vec![ResidualChannel {
-//!         name: "x".to_owned(),
-//!         before: vec![1e-5, f64::NAN, -2e-5],
-//!         after: None,
-//!         sigma: 1e-5,
-//!     }],
-//!     before_label: "innovation".to_owned(),
-//!     after_label: String::new(),
+//!     abscissa: "time".to_owned(),
+//!     abscissa_unit: "min".to_owned(),
 //!     quantity: "residual".to_owned(),
 //!     unit: "g".to_owned(),
+//!     columns: 1,
+//!     panels: vec![Panel {
+//!         name: "x".to_owned(),
+//!         abscissa: vec![0.0, 1.0, 2.0],
+//!         lines: vec![Line {
+//!             label: "innovation".to_owned(),
+//!             tint: Tint::Nominal,
+//!             kind: LineKind::Solid,
+//!             values: vec![1e-5, f64::NAN, -2e-5],
+//!         }],
+//!         ..Panel::default()
+//!     }],
+//!     ..Chart::default()
 //! };
 //! let svg = picture.to_svg()?;
 //! assert!(svg.starts_with("<svg") && svg.contains("Residuals are white"));
@@ -48,7 +45,7 @@
 //! # Data
 //!
 //! Not-a-number is a missing value and leaves a gap; so does an interval of more than four times
-//! the median one. Infinite values, columns of unequal length and times that decrease are errors.
+//! the median one. Infinite values, columns of unequal length and abscissas that decrease are errors.
 //! A panel without any value says "no data". Long columns are decimated to at most four points for
 //! each column of pixels, which keeps all extremes, so a picture of a million samples is small.
 //!
@@ -69,45 +66,25 @@ mod axis;
 mod bars;
 mod canvas;
 mod check;
-mod comparison;
-mod convergence;
-mod correlation;
-mod cross_validation;
 mod error;
+mod estimates;
 mod figure;
 mod geometry;
 mod layout;
 mod number;
-mod open_loop;
 pub mod page;
 mod panels;
 mod picture;
 #[cfg(feature = "png")]
 mod png;
 mod polyline;
-mod ranking;
-mod residual_vs_covariate;
-mod residuals;
 mod scale;
-mod scatter;
 mod span;
-mod spectrum;
 mod style;
 mod svg;
-mod term_contributions;
 mod text;
 
-pub use comparison::{ComparedEstimate, ComparedQuantity, Comparison};
-pub use convergence::{Convergence, EstimateHistory, ParameterHistory};
-pub use correlation::{Correlation, CorrelationChannel};
-pub use cross_validation::{CrossValidation, PredictionError};
 pub use error::Error;
-pub use open_loop::{OpenLoop, OpenLoopChannel};
 pub use picture::{Picture, write_svg};
 #[cfg(feature = "png")]
 pub use png::{to_png, write_png};
-pub use ranking::{Omitted, RankedEffect, Ranking, RankingGroup, Role};
-pub use residual_vs_covariate::{Bin, CovariatePanel, ResidualVsCovariate};
-pub use residuals::{ResidualChannel, Residuals};
-pub use spectrum::{MarkedFrequency, PowerThreshold, Spectrum, SpectrumChannel};
-pub use term_contributions::{TermContribution, TermContributions};

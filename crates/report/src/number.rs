@@ -19,11 +19,6 @@ pub(crate) fn with_uncertainty(value: f64, uncertainty: f64) -> String {
     typographic(&format::estimate(value, uncertainty).join(" ± "))
 }
 
-/// A probability in percent: `1%`, `0.1%`.
-pub(crate) fn percent(probability: f64) -> String {
-    format::percent(probability).replace(' ', "")
-}
-
 /// A number with a true minus sign and a power of ten in place of `e`.
 fn typographic(number: &str) -> String {
     let text = match number.split_once('e') {
@@ -108,8 +103,6 @@ mod tests {
         assert_eq!(short(0.0, 3), "0");
         assert_eq!(with_uncertainty(-0.026_251, 1.62e-4), "−0.02625 ± 0.00016");
         assert_eq!(with_uncertainty(12.3, 0.0), "12.3 ± 0");
-        assert_eq!(percent(0.01), "1%");
-        assert_eq!(percent(0.0005), "0.05%");
         assert_eq!(count(4320), "4320");
         assert_eq!(count(1_000_000), "1\u{A0}000\u{A0}000");
     }

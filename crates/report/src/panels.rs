@@ -9,27 +9,29 @@ use crate::geometry::Rect;
 use crate::layout::Layout;
 use crate::page::{Chart, Line, LineKind, Panel};
 use crate::picture::Picture;
+use crate::polyline::longest_interval;
 use crate::span::Span;
 use crate::style::{BAND_OPACITY, BLACK, DATA, LEGEND_LINE, PURPLE, SMALL, THIN, colour};
+use crate::text;
 
 /// Least height of a panel, px.
 const LEAST_PX: f64 = 150.0;
 
 /// Room of a tick along the abscissa and the ordinate, px: an axis has as many as fit.
-const TICK_PX: f64 = 70.0;
-const ROW_PX: f64 = 40.0;
+const TICK_PX: f64 = 50.0;
+const ROW_PX: f64 = 32.0;
 
 /// Most of a bar's width, px.
 const BAR_PX: f64 = 8.0;
 
 impl Picture for Chart {
-    fn to_svg(&self) -> Result<String, Error> {
+    fn to_svg_of(&self, source: &str) -> Result<String, Error> {
         self.check()?;
         let panel_px = f64::from(self.height_px).clamp(LEAST_PX, 2.0 * LEAST_PX);
         let layout = Layout::new(self.columns, self.panels.len(), panel_px).with_own_abscissae();
         Ok(figure(
             &self.title,
-            &self.caption,
+            &[&self.caption, source],
             &self.legend(),
             layout.height(),
             |canvas, body| self.draw(canvas, layout, body),
@@ -64,10 +66,13 @@ impl Chart {
     }
 
     fn draw(&self, canvas: &mut Canvas, layout: Layout, body: Rect) {
-        let ordinates: Vec<Option<Span>> = self
-            .panels
-            .iter()
-            .map(|panel| panel.ordinates(self.logarithmic))
+        let halves = self.halves();
+        let ordinates = self.panels.iter().zip(&halves);
+        let ordinates: Vec<Option<Span>> = ordinates
+            .map(|(panel, half)| match half {
+                Some(half) => Some(Span::symmetric(*half)),
+                None => panel.ordinates(self.logarithmic),
+            })
             .collect();
         let of_all = ordinates
             .iter()
@@ -93,12 +98,11 @@ impl Chart {
             } else {
                 ordinates[index]
             };
-            let unit = panel.unit.as_deref().unwrap_or(&self.unit);
             let axes = Axes {
                 frame,
                 x: axis(
                     along,
-                    (&self.abscissa, &self.abscissa_unit),
+                    self.abscissa_of(panel),
                     self.logarithmic_abscissa,
                     (frame.width() / TICK_PX) as usize,
                 ),
@@ -107,18 +111,18 @@ impl Chart {
                         true => span,
                         false => span.padded(0.05),
                     }),
-                    (&self.quantity, unit),
+                    (&self.quantity, self.unit_of(panel)),
                     self.logarithmic,
                     (frame.height() / ROW_PX) as usize,
                 ),
             };
             let labels = Labels {
                 name: &panel.name,
-                note: &panel.note,
+                note: &self.note(panel, halves[index]),
                 abscissa: layout.shows_abscissa(index),
                 ordinate_title: layout.is_first_in_row(index) || panel.unit.is_some(),
             };
-            let has_data = along.is_some() && up.is_some();
+            let has_data = along.is_some() && up.is_some() && panel.has_data();
             axes.draw(canvas, labels, has_data, |axes, canvas| {
                 panel.draw(canvas, axes);
             });
@@ -177,11 +181,17 @@ impl Panel {
         Span::of(all.filter(|value| !logarithmic || *value > 0.0))
     }
 
+    /// Whether any line has a value; a band alone is data where there are no lines.
+    fn has_data(&self) -> bool {
+        let mut values = self.lines.iter().flat_map(|line| &line.values);
+        self.lines.is_empty() || values.any(|value| value.is_finite())
+    }
+
     fn draw(&self, canvas: &mut Canvas, axes: &Axes) {
         for band in &self.bands {
             let edges = (&*band.lower, &*band.upper);
             let colour = colour(band.tint);
-            axes.band(canvas, &self.abscissa, edges, colour, BAND_OPACITY);
+            axes.band(canvas, &self.abscissa, edges, colour, self.longest());
         }
         for level in &self.levels {
             axes.horizontal_line(canvas, level.value, LineStyle::dashed(BLACK, THIN));
@@ -189,13 +199,15 @@ impl Panel {
         for line in &self.lines {
             self.draw_line(canvas, axes, line);
         }
-        for mark in &self.marks {
+        for (row, mark) in self.marks.iter().enumerate() {
             axes.vertical_line(canvas, mark.value, LineStyle::dashed(PURPLE, THIN));
             let (x, _) = axes.point(mark.value, 0.0);
             if (axes.frame.left..=axes.frame.right).contains(&x) {
-                let place = (x + 3.0, axes.frame.top + SMALL);
+                // Each label in a row of its own: marks may be close.
+                let y = axes.frame.top + SMALL + 1.3 * SMALL * row as f64;
+                let room = axes.frame.right - text::width_px(&mark.label, SMALL, false);
                 let style = TextStyle::new(SMALL, Align::Start).colour(PURPLE);
-                canvas.text(&mark.label, place, style);
+                canvas.text(&mark.label, ((x + 3.0).min(room), y), style);
             }
         }
     }
@@ -225,10 +237,15 @@ impl Panel {
                     canvas.line(&[(x, foot(axes)), (x, y)], style);
                 }
             }
-            _ if self.no_gaps => {
-                axes.line_bridging(canvas, &self.abscissa, &line.values, style, f64::INFINITY);
-            }
-            _ => axes.line(canvas, &self.abscissa, &line.values, style),
+            _ => axes.line(canvas, &self.abscissa, &line.values, style, self.longest()),
+        }
+    }
+
+    /// The longest interval of the abscissa that is no gap.
+    fn longest(&self) -> f64 {
+        match self.no_gaps {
+            true => f64::INFINITY,
+            false => longest_interval(&self.abscissa),
         }
     }
 }

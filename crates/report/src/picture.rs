@@ -4,12 +4,22 @@ use crate::error::Error;
 
 /// A picture that can be drawn from its data.
 pub trait Picture {
-    /// The picture as SVG. The same data gives the same bytes.
+    /// The picture as SVG, with a line below its description that tells what it is of; none if that is empty. The
+    /// same data gives the same bytes.
     ///
     /// # Errors
     ///
     /// [`Error::UnequalLengths`], [`Error::Value`] or [`Error::Empty`] if the data cannot be drawn.
-    fn to_svg(&self) -> Result<String, Error>;
+    fn to_svg_of(&self, source: &str) -> Result<String, Error>;
+
+    /// The picture as SVG without such a line.
+    ///
+    /// # Errors
+    ///
+    /// As [`Picture::to_svg_of`].
+    fn to_svg(&self) -> Result<String, Error> {
+        self.to_svg_of("")
+    }
 }
 
 /// Writes a picture as SVG, whole or not at all.

@@ -68,10 +68,14 @@ pub(crate) fn bands(
         last = x;
         let clamp = |y: f64| y.clamp(frame.top, frame.bottom);
         let (bottom, top) = (clamp(bottom), clamp(top));
-        match columns.last_mut() {
-            Some(column) if px - column[0] < 1.0 => {
+        match &mut *columns {
+            [.., column] if px - column[0] < 1.0 => {
                 column[1] = column[1].max(bottom);
                 column[2] = column[2].min(top);
+            }
+            // A level stretch needs its ends only.
+            [.., before, column] if before[1..] == column[1..] && column[1..] == [bottom, top] => {
+                column[0] = px;
             }
             _ => columns.push([px, bottom, top]),
         }
@@ -246,6 +250,18 @@ mod tests {
         let expected = span(45.0 - 7.0 * 2.5, 45.0 + 5.0 * 2.5);
         assert_eq!(drawn, Some(expected));
         assert!(lines[0].windows(2).all(|pair| pair[0].0 <= pair[1].0));
+    }
+
+    #[test]
+    fn a_level_band_has_four_corners() {
+        let time: Vec<f64> = (0..100).map(f64::from).collect();
+        let (x, y) = (span(0.0, 99.0), span(0.0, 1.0));
+        let edge = |value: f64| points(x, y, &time, &[value; 100]);
+        let bands = bands(FRAME, &time, (&edge(0.2), &edge(0.8)), 9.0);
+        assert_eq!(
+            bands,
+            [[(10.0, 60.0), (110.0, 60.0), (110.0, 30.0), (10.0, 30.0)]]
+        );
     }
 
     #[test]

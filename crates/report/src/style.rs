@@ -30,7 +30,7 @@ pub(crate) const DATA: f64 = 1.375;
 pub(crate) const LEGEND_LINE: f64 = 2.0;
 
 /// Opacity of confidence bands.
-pub(crate) const BAND_OPACITY: f64 = 0.35;
+pub(crate) const BAND_OPACITY: f64 = 0.22;
 
 /// A colour: red, green, blue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,7 +46,6 @@ impl fmt::Display for Colour {
 /// (<https://jfly.uni-koeln.de/color/>).
 pub(crate) const ORANGE: Colour = Colour(0xE6, 0x9F, 0x00);
 pub(crate) const SKY: Colour = Colour(0x56, 0xB4, 0xE9);
-pub(crate) const GREEN: Colour = Colour(0x00, 0x9E, 0x73);
 pub(crate) const BLUE: Colour = Colour(0x00, 0x72, 0xB2);
 pub(crate) const VERMILION: Colour = Colour(0xD5, 0x5E, 0x00);
 pub(crate) const PURPLE: Colour = Colour(0xCC, 0x79, 0xA7);
@@ -57,21 +56,14 @@ pub(crate) const GREY: Colour = Colour(0x99, 0x99, 0x99);
 pub(crate) const FAINT: Colour = Colour(0xE8, 0xE8, 0xE8);
 pub(crate) const WHITE: Colour = Colour(0xFF, 0xFF, 0xFF);
 
-/// The nominal model and the extended one have one colour each in every picture.
-pub(crate) const NOMINAL: Colour = VERMILION;
-pub(crate) const EXTENDED: Colour = BLUE;
-
-/// Colour of a series by its meaning.
+/// Colour of a series by its meaning: the nominal model and the extended one have one each in every picture.
 pub(crate) fn colour(tint: Tint) -> Colour {
     match tint {
-        Tint::Nominal => NOMINAL,
+        Tint::Nominal => VERMILION,
         Tint::Expected => BLACK,
         Tint::Alternative => ORANGE,
         Tint::Other => GREY,
         Tint::Measured => SKY,
-        Tint::Extended => EXTENDED,
+        Tint::Extended => BLUE,
     }
 }
-
-/// Colours of series, in this order, again from the start when there are more.
-pub(crate) const SERIES: [Colour; 7] = [BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLACK];

@@ -4,7 +4,8 @@
 
 mod samples;
 
-use gyrocal_report::{Error, Picture, Residuals, write_svg};
+use gyrocal_report::page::Chart;
+use gyrocal_report::{Error, Picture, write_svg};
 use samples::{all, residuals};
 
 /// Pairs of coordinates of a list of points.
@@ -34,10 +35,10 @@ fn canvas(svg: &str) -> (f64, f64) {
 }
 
 #[test]
-fn each_says_its_title_its_bands_and_its_axes() {
+fn each_says_its_title_its_bands_its_axes_and_its_source() {
     for (name, picture, words) in all() {
-        let svg = picture.to_svg().unwrap();
-        for word in words {
+        let svg = picture.to_svg_of("record.csv: a finding").unwrap();
+        for word in words.into_iter().chain(["record.csv: a finding"]) {
             assert!(svg.contains(word), "{name}: no `{word}`");
         }
         assert!(svg.contains("<title>"), "{name}");
@@ -62,7 +63,7 @@ fn everything_drawn_is_on_the_canvas() {
             .into_iter()
             .flat_map(points)
             .collect();
-        assert!(drawn.len() > 20, "{name}");
+        assert!(drawn.len() > 10, "{name}");
         for (x, y) in drawn {
             let inside = (0.0..=width).contains(&x) && (0.0..=height).contains(&y);
             assert!(
@@ -76,7 +77,7 @@ fn everything_drawn_is_on_the_canvas() {
 #[test]
 fn data_stay_in_their_panel() {
     let mut picture = residuals(500);
-    picture.channels[1].before[250] = 1.0;
+    picture.panels[1].lines[0].values[250] = 1.0;
     let svg = picture.to_svg().unwrap();
     // The axes are the paths of exactly three points: top left, bottom left, bottom right.
     let lists: Vec<_> = attributes(&svg, "points").into_iter().map(points).collect();
@@ -102,7 +103,7 @@ fn data_stay_in_their_panel() {
         );
     }
     assert!(
-        svg.contains("1 beyond the scale"),
+        svg.contains("n = 500; 1 beyond the scale, to 1.0 g"),
         "what is cut must be said"
     );
 }
@@ -111,8 +112,8 @@ fn data_stay_in_their_panel() {
 fn a_million_samples_make_a_small_picture() {
     let count = 1_000_000;
     let mut picture = residuals(count);
-    for channel in &mut picture.channels {
-        channel.after = Some(channel.before.clone());
+    for panel in &mut picture.panels {
+        panel.lines.push(panel.lines[0].clone());
     }
     let svg = picture.to_svg().unwrap();
     // Six curves of at most four points of eleven bytes on each of 880 columns of pixels are
@@ -123,7 +124,7 @@ fn a_million_samples_make_a_small_picture() {
 #[test]
 fn missing_data_are_said_to_be_missing() {
     let mut picture = residuals(50);
-    picture.channels[2].before = vec![f64::NAN; 50];
+    picture.panels[2].lines[0].values = vec![f64::NAN; 50];
     assert_eq!(picture.to_svg().unwrap().matches("no data").count(), 1);
     assert_eq!(residuals(0).to_svg().unwrap().matches("no data").count(), 3);
 }
@@ -131,15 +132,15 @@ fn missing_data_are_said_to_be_missing() {
 #[test]
 fn wrong_data_are_errors_that_say_where() {
     let mut infinite = residuals(50);
-    infinite.channels[1].before[7] = f64::INFINITY;
+    infinite.panels[1].lines[0].values[7] = f64::INFINITY;
     let message = infinite.to_svg().unwrap_err().to_string();
     assert!(
-        message.contains("residuals of y, value 7: found inf"),
+        message.contains("line innovation of panel y, value 7: found inf"),
         "{message}"
     );
 
     let mut short = residuals(50);
-    short.channels[0].before.pop();
+    short.panels[0].lines[0].values.pop();
     assert!(matches!(
         short.to_svg(),
         Err(Error::UnequalLengths {
@@ -150,21 +151,38 @@ fn wrong_data_are_errors_that_say_where() {
     ));
 
     let mut back = residuals(50);
-    back.time_s[20] = 0.0;
+    back.panels[0].abscissa[20] = 0.0;
     assert!(matches!(back.to_svg(), Err(Error::Value { index: 20, .. })));
 
-    let mut noiseless = residuals(50);
-    noiseless.channels[0].sigma = 0.0;
-    assert!(matches!(noiseless.to_svg(), Err(Error::Value { .. })));
-
-    let without_channels = Residuals {
-        channels: Vec::new(),
+    let without_panels = Chart {
+        panels: Vec::new(),
         ..residuals(50)
     };
-    assert!(matches!(
-        without_channels.to_svg(),
-        Err(Error::Empty { .. })
-    ));
+    assert!(matches!(without_panels.to_svg(), Err(Error::Empty { .. })));
+}
+
+#[test]
+fn gaps_and_missing_values_are_left_open() {
+    let lines = |picture: &Chart| {
+        let svg = picture.to_svg().unwrap();
+        let lists = attributes(&svg, "points");
+        lists
+            .into_iter()
+            .filter(|list| points(list).len() > 3)
+            .count()
+    };
+    let whole = residuals(50);
+    let mut missing = whole.clone();
+    missing.panels[0].lines[0].values[25] = f64::NAN;
+    assert_eq!(lines(&missing), lines(&whole) + 1);
+    // A pause breaks the line and its band, unless the panel has no gaps.
+    let mut pause = whole.clone();
+    for day in &mut pause.panels[0].abscissa[25..] {
+        *day += 1.0;
+    }
+    assert_eq!(lines(&pause), lines(&whole) + 2);
+    pause.panels[0].no_gaps = true;
+    assert_eq!(lines(&pause), lines(&whole));
 }
 
 #[test]
@@ -184,7 +202,7 @@ fn a_file_is_written_whole_or_not_at_all() {
     let before = std::fs::read(&path).unwrap();
     assert!(before.ends_with(b"</svg>\n"));
     let mut wrong = residuals(50);
-    wrong.channels[0].before.pop();
+    wrong.panels[0].lines[0].values.pop();
     assert!(write_svg(&wrong, &path).is_err());
     assert_eq!(std::fs::read(&path).unwrap(), before);
     let nowhere = directory.path().join("no/such/directory.svg");

@@ -6,14 +6,14 @@ use gyrocal::generated::MODEL_HASH;
 use gyrocal_diagnosis::{Gate, RecordToDiagnose, diagnose_records};
 use gyrocal_pages::{Part, of_diagnosis, of_result, pictures as charts};
 use gyrocal_record::{Bench, InputRole, Outputs, RecordFile, printable_path};
-use gyrocal_report::Picture;
 
 use super::{DiagnoseArguments, NotDiagnosed, exit_code};
 use crate::layout::layout;
 use crate::outputs::{manifest_of, stage_answer};
+use crate::pictures::Named;
 use crate::progress::Progress;
 use crate::records::refuse_shared_rows;
-use crate::{Failure, Reply, gyro_axes, page, pictures};
+use crate::{Failure, Reply, gyro_axes, page};
 
 /// Runs the command; `inputs` are each record with its bench file.
 pub(super) fn run(
@@ -66,23 +66,13 @@ pub(super) fn run(
         layout(&gyrocal_words::diagnosis(result)),
     );
     let mut outputs = Outputs::new();
-    if arguments.report.is_some() || arguments.figures.is_some() {
+    if arguments.views.are_asked() {
         let mut parts = vec![of_result(result)];
         for ((record, alone), bench) in arguments.records.iter().zip(&found.alone).zip(&benches) {
             parts.push(page::part(record, of_diagnosis(alone, bench))?);
         }
-        if let Some(folder) = &arguments.figures {
-            let drawn = drawn(&parts);
-            let record = &arguments.records[0];
-            answer.wrote(
-                folder,
-                &pictures::stage(record, &drawn, folder, &mut outputs)?,
-            );
-        }
-        if let Some(path) = &arguments.report {
-            page::stage(path, parts, &mut outputs)?;
-            answer.wrote(path, page::WHAT);
-        }
+        let (views, record) = (&arguments.views, &arguments.records[0]);
+        views.stage_parts(record, parts, drawn, &mut outputs, &mut answer)?;
     }
     if let Some(path) = &arguments.json {
         stage_answer(path, result, &mut outputs)?;
@@ -95,7 +85,7 @@ pub(super) fn run(
 }
 
 /// The charts of all parts: those of the answer to all records, and of each record by its number.
-fn drawn(parts: &[Part]) -> Vec<(String, Box<dyn Picture>)> {
+fn drawn(parts: &[Part]) -> Vec<Named> {
     let of_part = |(place, part): (usize, &Part)| {
         let of = match place {
             0 => "together".to_owned(),

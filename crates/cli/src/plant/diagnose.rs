@@ -4,20 +4,29 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use gyrocal_answer::{Answer, Coefficients, Verdict, write_text};
+<<<<<<< HEAD
 use gyrocal_document::{Screen, Standing};
 use gyrocal_pages::{of_plant, plant_pictures};
 use gyrocal_plant::{
     ColumnMap, Diagnosed, LoadedPlant, NamedRecord, PlantError, SearchOptions, diagnose_records,
+=======
+use gyrocal_diagnosis::prose::{Screen, Standing};
+use gyrocal_pages::{Part, of_plant, pictures};
+use gyrocal_plant::{
+    ColumnMap, DiagnosedRecords, LoadedPlant, NamedRecord, PlantError, SearchOptions,
+    diagnose_records, sentences,
+>>>>>>> 80a67e4cc4268644a3ba6875813b1ce0ff848d88
 };
 use gyrocal_record::{Manifest, Outputs, printable_path};
 use gyrocal_statistics::format;
-use miette::{Report, miette};
+use miette::Report;
 
 use crate::numbers::probability;
 use crate::outputs::{self, manifest, same_file};
+use crate::page::Views;
 use crate::progress::Progress;
 use crate::tables::{right, table};
-use crate::{Failure, Reply, page, pictures};
+use crate::{Failure, Reply, page};
 
 /// Find what the model of this plant lacks in a record, or in several.
 #[derive(Debug, Args)]
@@ -42,10 +51,8 @@ pub(super) struct RecordArguments {
     /// Write the result for programs (JSON).
     #[arg(long, value_name = "OUT.json")]
     json: Option<PathBuf>,
-    #[arg(long, value_name = "DIR", help = pictures::HELP)]
-    figures: Option<PathBuf>,
-    #[arg(long, value_name = "OUT.html", help = page::HELP)]
-    report: Option<PathBuf>,
+    #[command(flatten)]
+    views: Views,
     /// Family-wise false-alarm probability.
     #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = probability)]
     false_alarm: f64,
@@ -96,29 +103,11 @@ pub(super) fn run(
     let answer = &found.together.answer;
     let mut shown = Reply::of(screen(answer), details(answer));
     let mut outputs = Outputs::new();
-    if let Some(folder) = &arguments.figures {
-        let of = &arguments.records[0];
-        let drawn = plant_pictures(&found.together, &name(arguments)).map_err(|reason| {
-            Failure::Work(miette!("{}: no pictures: {reason}", printable_path(of)))
-        })?;
-        let what = pictures::stage(of, &drawn, folder, &mut outputs)?;
-        shown.wrote(folder, &what);
-    }
-    if let Some(path) = &arguments.report {
-        let mut parts = vec![part(
-            &found.together,
-            &name(arguments),
-            arguments,
-            &manifest,
-        )?];
-        for (record, alone) in arguments.records.iter().zip(&found.alone) {
-            if let Ok(alone) = alone {
-                let name = format!("{} alone", file_name(record));
-                parts.push(part(alone, &name, arguments, &manifest)?);
-            }
-        }
-        page::stage(path, parts, &mut outputs)?;
-        shown.wrote(path, page::WHAT);
+    if arguments.views.are_asked() {
+        let parts = parts(&found, arguments, &manifest)?;
+        let together = |parts: &[Part]| parts.iter().take(1).cloned().flat_map(pictures).collect();
+        let (views, record) = (&arguments.views, &arguments.records[0]);
+        views.stage_parts(record, parts, together, &mut outputs, &mut shown)?;
     }
     if let Some(path) = &arguments.json {
         let text = write_text(answer).map_err(|error| Failure::Work(Report::msg(error)))?;
@@ -129,13 +118,21 @@ pub(super) fn run(
     Ok(shown)
 }
 
-fn part(
-    diagnosed: &Diagnosed,
-    name: &str,
+/// All records together, and each alone.
+fn parts(
+    found: &DiagnosedRecords,
     arguments: &RecordArguments,
     manifest: &Manifest,
-) -> Result<gyrocal_pages::Part, Failure> {
-    page::part(&arguments.records[0], of_plant(diagnosed, name, manifest))
+) -> Result<Vec<Part>, Failure> {
+    let of = &arguments.records[0];
+    let part = |one, name: &str| page::part(of, of_plant(one, name, manifest));
+    let mut parts = vec![part(&found.together, &name(arguments))?];
+    for (record, alone) in arguments.records.iter().zip(&found.alone) {
+        if let Ok(alone) = alone {
+            parts.push(part(alone, &format!("{} alone", file_name(record)))?);
+        }
+    }
+    Ok(parts)
 }
 
 /// Name of what is diagnosed, without folders.
@@ -159,14 +156,9 @@ fn checked_inputs<'a>(
     inputs.extend(arguments.validate.as_deref());
     inputs.extend(arguments.validate_columns.as_deref());
     inputs.extend(arguments.next.iter().map(PathBuf::as_path));
-    let (json, figures) = (arguments.json.as_deref(), arguments.figures.as_deref());
-    outputs::check(&inputs, json, figures)?;
-    page::check(
-        &inputs,
-        &[("--json", json)],
-        arguments.report.as_deref(),
-        figures,
-    )?;
+    let json = arguments.json.as_deref();
+    outputs::check(&inputs, json, arguments.views.figures())?;
+    arguments.views.check(&inputs, &[("--json", json)])?;
     if let Some(later) = &arguments.validate
         && arguments.records.iter().any(|one| same_file(later, one))
     {

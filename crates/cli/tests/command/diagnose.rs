@@ -223,16 +223,16 @@ fn pictures_are_written() {
     let (_, folder) = whole();
     let written = |name: &str| fs::read(folder.path("figures").join(name)).unwrap();
     for name in [
-        "residuals",
-        "free-run",
-        "residual-against-force",
-        "periodogram",
-        "autocorrelation",
-        "norm",
+        "simulation",
+        "residual",
+        "residual-2",
         "ranking",
-        "gain",
         "coefficients",
-        "convergence",
+        "coefficients-2",
+        "residuals",
+        "residuals-2",
+        "magnitude",
+        "gain",
     ] {
         assert!(
             written(&format!("{name}.svg")).starts_with(b"<svg"),
@@ -244,14 +244,31 @@ fn pictures_are_written() {
             "{name}"
         );
     }
-    let residuals = String::from_utf8(written("residuals.svg")).unwrap();
-    assert!(residuals.contains("for the nominal model") && residuals.contains("with gyro_y.g_z"));
+    let residual = String::from_utf8(written("residual.svg")).unwrap();
+    assert!(residual.contains("for the nominal model") && residual.contains("with gyro_y.g_z"));
+    // Each tells what it is of.
+    let source = format!("Open-loop residual: {RECORD}. Fault found: gyro_y.g_z.");
+    assert!(residual.contains(&source), "{residual}");
+    let text = |name: &str| String::from_utf8(written(name)).unwrap();
+    let words = [
+        ("residual-2.svg", "specific force z [g]"),
+        ("residuals.svg", "autocorrelations outside the 95 % band"),
+        ("residuals-2.svg", "detection threshold"),
+        (
+            "magnitude.svg",
+            "Squared specific force less squared gravity",
+        ),
+        ("coefficients-2.svg", "Convergence of each coefficient"),
+    ];
+    for (name, words) in words {
+        assert!(text(name).contains(words), "{name}: no `{words}`");
+    }
     // The picture of the README is the one that its command draws.
     let shown = fs::read(repository("docs/pictures/hidden-fault.png")).unwrap();
     assert!(shown.len() < 200_000);
     assert!(
-        shown == gyrocal_report::to_png(&residuals, PNG_WIDTH_PX).unwrap(),
-        "docs/pictures/hidden-fault.png differs: copy the residuals.png that a build with --features \
+        shown == gyrocal_report::to_png(&residual, PNG_WIDTH_PX).unwrap(),
+        "docs/pictures/hidden-fault.png differs: copy the residual.png that a build with --features \
          png draws there"
     );
 }

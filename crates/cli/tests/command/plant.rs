@@ -133,11 +133,11 @@ fn several_records_have_one_answer_and_a_report() {
         assert!(page.contains(word), "{word}");
     }
     for name in [
-        "residuals",
-        "free-run",
+        "simulation",
+        "residual",
         "ranking",
         "parameters",
-        "autocorrelation",
+        "residuals",
     ] {
         let picture = folder.text(&format!("f/{name}.svg"));
         assert!(picture.starts_with("<svg"), "{name}");

@@ -101,24 +101,25 @@ fn causes_are_drawn_as_the_readme_shows_them() {
     let (log, description) = (repository_argument(LOG), repository_argument(DESCRIPTION));
     let arguments = arguments(&log, &description);
     let text = folder.succeed(&[&arguments[..4], &["--figures", "pictures"]].concat());
-    assert!(text.contains("pictures: 2 pictures"), "{text}");
-    let causes = folder.text("pictures/causes.svg");
+    assert!(text.contains("pictures: 3 pictures"), "{text}");
+    let terms = folder.text("pictures/terms.svg");
     for cause in ["gyro_x.g_y", "gyro_y.g_z", "gyro_z.g_x"] {
-        assert!(causes.contains(cause), "{cause}");
+        assert!(terms.contains(cause), "{cause}");
     }
     // One dot for each stop in each of six panels, and one in the key.
-    assert_eq!(causes.matches("<circle").count(), 6 * 38 + 1);
+    assert_eq!(terms.matches("<circle").count(), 6 * 38 + 1);
     assert!(
         folder
-            .text("pictures/residuals.svg")
+            .text("pictures/residual.svg")
             .contains("extended law")
     );
+    assert!(folder.text("pictures/laws.svg").contains("nominal law"));
     // The picture of the README is the one that its command draws.
     let shown = std::fs::read(repository("docs/pictures/xsens-causes.png")).unwrap();
     assert!(shown.len() < 200_000);
     assert!(
-        shown == gyrocal_report::to_png(&causes, PNG_WIDTH_PX).unwrap(),
-        "docs/pictures/xsens-causes.png differs: copy the causes.png that a build with --features \
+        shown == gyrocal_report::to_png(&terms, PNG_WIDTH_PX).unwrap(),
+        "docs/pictures/xsens-causes.png differs: copy the terms.png that a build with --features \
          png draws there"
     );
 }
@@ -134,8 +135,8 @@ fn outputs_go_into_a_folder_that_the_command_makes_but_not_over_each_other() {
         assert_eq!(output.status.code(), Some(2));
         String::from_utf8(output.stderr).unwrap()
     };
-    let errors = refused(&["--figures", "new", "--json", "new/causes.svg"]);
-    let expected = "--json new/causes.svg is among the pictures of --figures new";
+    let errors = refused(&["--figures", "new", "--json", "new/terms.svg"]);
+    let expected = "--json new/terms.svg is among the pictures of --figures new";
     assert!(errors.contains(expected), "{errors}");
     let errors = refused(&["--figures", "new", "--json", "new"]);
     assert!(
@@ -149,7 +150,7 @@ fn outputs_go_into_a_folder_that_the_command_makes_but_not_over_each_other() {
     let outputs = ["--figures", "new/pictures", "--json", "new/o.json"];
     folder.succeed(&[command, &outputs].concat());
     assert!(folder.path("new/o.json").exists());
-    assert!(folder.path("new/pictures/causes.svg").exists());
+    assert!(folder.path("new/pictures/terms.svg").exists());
 }
 
 #[test]

@@ -3,9 +3,9 @@
 use gyrocal::Effect;
 use gyrocal::effect::{EffectKind, EffectParameter, NoiseProperty, Role};
 use gyrocal_calibration::{FittedPlatform, NoiseModel, Options, Run};
-use gyrocal_record::AXES;
-use gyrocal_report::{ResidualChannel, Residuals};
-use gyrocal_statistics::format;
+use gyrocal_record::{AXES, Record};
+use gyrocal_report::page::{Band, Chart, Line, LineKind, Panel, TimeAxis, Tint};
+use gyrocal_statistics::{NORMAL_97_5, format};
 use gyrocal_testkit::workspace;
 use gyrocal_truth::{Hidden, InitialAttitude, Scenario, Simulation, Temperature, simulate};
 
@@ -69,14 +69,14 @@ pub(super) fn has_picture(effect: &Effect) -> bool {
 }
 
 /// The picture of an effect that a record can show.
-pub(super) fn picture(effect: &Effect) -> Result<Option<Residuals>, Error> {
+pub(super) fn picture(effect: &Effect) -> Result<Option<Chart>, Error> {
     if !has_picture(effect) {
         return Ok(None);
     }
     let scenario = scenario()?;
     let mut shown = drawn(effect, &scenario, 1.0)?;
     for power in 1..=LARGEST_POWER {
-        if effect.is_noise() || effect.is_nominal || is_visible(&shown) {
+        if effect.is_noise() || effect.is_nominal || is_visible(&shown, scenario.accel_noise_g) {
             break;
         }
         shown = drawn(effect, &scenario, 10_f64.powi(power))?;
@@ -84,16 +84,14 @@ pub(super) fn picture(effect: &Effect) -> Result<Option<Residuals>, Error> {
     Ok(Some(shown))
 }
 
-fn is_visible(shown: &Residuals) -> bool {
-    let mut channels = shown.channels.iter();
-    channels.any(|channel| {
-        let least = VISIBLE_SIGMAS * channel.sigma;
-        channel.before.iter().any(|value| value.abs() > least)
-    })
+fn is_visible(shown: &Chart, sigma_g: f64) -> bool {
+    let lines = shown.panels.iter().flat_map(|panel| &panel.lines);
+    let mut values = lines.flat_map(|line| &line.values);
+    values.any(|value| value.abs() > VISIBLE_SIGMAS * sigma_g)
 }
 
 /// The effect at `factor` times its typical size.
-fn drawn(effect: &Effect, scenario: &Scenario, factor: f64) -> Result<Residuals, Error> {
+fn drawn(effect: &Effect, scenario: &Scenario, factor: f64) -> Result<Chart, Error> {
     let values = values(effect, scenario, factor);
     let named: Vec<(&str, f64)> = values
         .iter()
@@ -119,23 +117,51 @@ fn drawn(effect: &Effect, scenario: &Scenario, factor: f64) -> Result<Residuals,
         let left = left_by_the_fit(&simulation, scenario)?;
         (left, "left by the fit of the nominal model")
     };
-    let channels = AXES.into_iter().enumerate();
-    let channels = channels.map(|(axis, name)| ResidualChannel {
-        name: name.to_owned(),
-        before: residual_g.iter().map(|row| row[axis]).collect(),
-        after: None,
-        sigma: scenario.accel_noise_g,
-    });
-    Ok(Residuals {
+    Ok(Chart {
         title: format!("{}: {}", effect.id, sizes.join(", ")),
-        subtitle: effect.name.to_owned(),
-        channels: channels.collect(),
-        time_s: simulation.record.time_s,
-        before_label: label.to_owned(),
-        after_label: String::new(),
+        caption: effect.name.to_owned(),
+        ..chart(
+            &simulation.record,
+            &residual_g,
+            label,
+            scenario.accel_noise_g,
+        )
+    })
+}
+
+/// Residuals of a record, one panel for each axis, with the band of the noise of one row.
+fn chart(record: &Record, residual_g: &[[f64; 3]], label: &str, sigma_g: f64) -> Chart {
+    let time = TimeAxis::of(&record.time_s);
+    let half = NORMAL_97_5 * sigma_g;
+    let panels = AXES.into_iter().enumerate().map(|(axis, name)| Panel {
+        name: name.to_owned(),
+        abscissa: time.values.clone(),
+        bands: vec![Band {
+            label: "95 % of the noise of the accelerometers".to_owned(),
+            tint: Tint::Expected,
+            lower: vec![-half; residual_g.len()],
+            upper: vec![half; residual_g.len()],
+        }],
+        lines: vec![Line {
+            label: label.to_owned(),
+            tint: Tint::Nominal,
+            kind: LineKind::Solid,
+            values: residual_g.iter().map(|row| row[axis]).collect(),
+        }],
+        ..Panel::default()
+    });
+    Chart {
+        abscissa: "time from the first row".to_owned(),
+        abscissa_unit: time.unit.to_owned(),
         quantity: "residual".to_owned(),
         unit: "g".to_owned(),
-    })
+        same_scale: true,
+        cut_extremes: true,
+        columns: 1,
+        height_px: 150,
+        panels: panels.collect(),
+        ..Chart::default()
+    }
 }
 
 /// The scenario with its noise for effects of the noise of the readings, without it for all others.

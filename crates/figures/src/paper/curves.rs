@@ -3,10 +3,12 @@
 use gyrocal_calibration::{Options, declared_attitude, filter_settings, run_factorised_filter};
 use gyrocal_evaluation::CalibrationTrial;
 use gyrocal_record::AXES;
-use gyrocal_report::{
-    ComparedEstimate, ComparedQuantity, Comparison, Convergence, EstimateHistory, ParameterHistory,
-    Picture, ResidualChannel, Residuals,
+use gyrocal_report::Picture;
+use gyrocal_report::page::{
+    Band, Chart, EstimateRow, Estimates, Level, Line, LineKind, Panel, TimeAxis, Tint,
+    ValueWithSigma,
 };
+use gyrocal_statistics::{NORMAL_97_5, format, rms_of_present};
 use gyrocal_truth::{Coefficients, Simulation, euler_rule, simulate};
 
 use super::ways::{Found, PAPER_DAYS, SHOWN_SEED, WAYS, key, scenario};
@@ -14,6 +16,9 @@ use crate::error::Error;
 
 /// Number of rows between points of a curve.
 const THINNED: usize = 10;
+
+/// Part of the time that does not set the scale of a panel.
+const UNSETTLED: f64 = 0.1;
 
 /// A picture and the stem of its files.
 type Named = (&'static str, Box<dyn Picture>);
@@ -74,18 +79,56 @@ impl Track {
         Ok(track)
     }
 
-    fn coefficient(&self, letter: &str, index: usize, reference: f64) -> ParameterHistory {
+    fn coefficient(&self, letter: &str, index: usize, reference: f64) -> Panel {
         let (name, unit) = named(index);
-        ParameterHistory {
+        let pairs = || self.estimate.iter().zip(&self.sigma);
+        let edge = |sigmas: f64| -> Vec<f64> {
+            let of =
+                |(values, sigma): (&[f64; 9], &[f64; 9])| values[index] + sigmas * sigma[index];
+            pairs().map(of).collect()
+        };
+        let last = pairs().next_back();
+        let note = last.map(|(values, sigma)| format::estimate(values[index], sigma[index]));
+        let abscissa = TimeAxis::of(&self.time_s).values;
+        Panel {
             name: format!("{letter}: {name}"),
-            unit,
-            estimates: EstimateHistory {
-                estimate: self.estimate.iter().map(|values| values[index]).collect(),
-                sigma: self.sigma.iter().map(|values| values[index]).collect(),
-            },
-            reference: Some(reference),
-            second: None,
+            note: note.map_or_else(String::new, |both| both.join(" ± ").replace('-', "−")),
+            unit: Some(unit),
+            scale_from: abscissa.last().map(|last| UNSETTLED * last),
+            abscissa,
+            bands: vec![Band {
+                label: "±2σ (95 %)".to_owned(),
+                tint: Tint::Measured,
+                lower: edge(-2.0),
+                upper: edge(2.0),
+            }],
+            lines: vec![line("estimate", Tint::Extended, edge(0.0))],
+            levels: vec![Level {
+                label: "true value in A, batch estimate in B and C".to_owned(),
+                value: reference,
+            }],
+            ..Panel::default()
         }
+    }
+}
+
+fn line(label: &str, tint: Tint, values: Vec<f64>) -> Line {
+    Line {
+        label: label.to_owned(),
+        tint,
+        kind: LineKind::Solid,
+        values,
+    }
+}
+
+/// A chart over the time of a record.
+fn over(time_s: &[f64], panels: Vec<Panel>) -> Chart {
+    Chart {
+        abscissa: "time from the first row".to_owned(),
+        abscissa_unit: TimeAxis::of(time_s).unit.to_owned(),
+        height_px: 150,
+        panels,
+        ..Chart::default()
     }
 }
 
@@ -96,9 +139,9 @@ fn named(index: usize) -> (String, String) {
 }
 
 /// The three coefficients of one gyro, one a row, in the three ways, one a column.
-fn convergence(gyro: usize, tracks: &[Track; 3], batch: &CalibrationTrial) -> Convergence {
+fn convergence(gyro: usize, tracks: &[Track; 3], batch: &CalibrationTrial) -> Chart {
     let [by_rule, paper, default] = tracks;
-    let parameters = (3 * gyro..3 * gyro + 3).flat_map(|index| {
+    let panels = (3 * gyro..3 * gyro + 3).flat_map(|index| {
         let (truth, error) = (batch.truth[index], batch.error[index]);
         [
             by_rule.coefficient("A", index, truth),
@@ -107,71 +150,84 @@ fn convergence(gyro: usize, tracks: &[Track; 3], batch: &CalibrationTrial) -> Co
         ]
     });
     let name = AXES[gyro];
-    Convergence {
+    Chart {
         title: format!(
             "Gyro {name}: the paper's filter converges only on data simulated by its own rule"
         ),
-        subtitle: "A: paper's filter, data simulated by its own rule. B: paper's filter, exact \
-                   data. C: default filter, exact data"
+        caption: "A: paper's filter, data simulated by its own rule. B: paper's filter, exact data. C: default \
+                  filter, exact data. The first tenth of the time does not set the scales."
             .to_owned(),
-        time_s: by_rule.time_s.clone(),
-        parameters: parameters.collect(),
         columns: 3,
-        reference_label: "true value in A, batch estimate in B and C".to_owned(),
-        estimate_label: String::new(),
-        second_label: String::new(),
+        ..over(&by_rule.time_s, panels.collect())
     }
 }
 
-fn innovations(exact: &Simulation, paper: Track, default: Track) -> Residuals {
+fn innovations(exact: &Simulation, paper: Track, default: Track) -> Chart {
+    let time = TimeAxis::of(&exact.record.time_s);
+    let half = vec![NORMAL_97_5 * exact.bench.accel_noise_g; time.values.len()];
     let both = paper.innovation_g.into_iter().zip(default.innovation_g);
-    let channels = AXES
-        .into_iter()
-        .zip(both)
-        .map(|(name, (before, after))| ResidualChannel {
+    let panels = AXES.into_iter().zip(both).map(|(name, (before, after))| {
+        let micro_g = |values: &[f64]| format::short(1e6 * rms_of_present(values).0, 2);
+        Panel {
             name: name.to_owned(),
-            before,
-            after: Some(after),
-            sigma: exact.bench.accel_noise_g,
-        });
-    Residuals {
+            note: format!("rms {} → {} µg", micro_g(&before), micro_g(&after)),
+            abscissa: time.values.clone(),
+            bands: vec![Band {
+                label: "95 % of the noise of the accelerometers".to_owned(),
+                tint: Tint::Expected,
+                lower: half.iter().map(|half| -half).collect(),
+                upper: half.clone(),
+            }],
+            lines: vec![
+                line("paper's filter", Tint::Nominal, before),
+                line("default filter", Tint::Extended, after),
+            ],
+            ..Panel::default()
+        }
+    });
+    Chart {
         title: "On exact data the innovations of the paper's filter are far larger than the noise"
             .to_owned(),
-        subtitle: format!("One record, seed {SHOWN_SEED}"),
-        time_s: exact.record.time_s.clone(),
-        channels: channels.collect(),
-        before_label: "paper's filter".to_owned(),
-        after_label: "default filter".to_owned(),
         quantity: "innovation".to_owned(),
         unit: "g".to_owned(),
+        same_scale: true,
+        cut_extremes: true,
+        columns: 1,
+        ..over(&exact.record.time_s, panels.collect())
     }
 }
 
-fn estimates(judged: [&CalibrationTrial; 3]) -> Comparison {
-    let quantity = |i: usize| {
-        let (name, unit) = named(i);
-        let estimates = judged.iter().map(|run| ComparedEstimate {
-            value: run.truth[i] + run.error[i],
-            sigma: run.sigma[i],
+fn estimates(judged: [&CalibrationTrial; 3]) -> Estimates {
+    let models = [
+        ("true value", Tint::Expected),
+        ("paper's filter", Tint::Nominal),
+        ("default filter", Tint::Extended),
+        ("batch", Tint::Alternative),
+    ];
+    let row = |index: usize| {
+        let (name, unit) = named(index);
+        let truth = ValueWithSigma {
+            value: judged[0].truth[index],
+            sigma: f64::NAN,
+        };
+        let estimates = judged.iter().map(|run| ValueWithSigma {
+            value: run.truth[index] + run.error[index],
+            sigma: run.sigma[index],
         });
-        ComparedQuantity {
+        EstimateRow {
             name,
             unit,
-            reference: Some(judged[0].truth[i]),
-            estimates: estimates.collect(),
+            values: [truth].into_iter().chain(estimates).collect(),
+            note: String::new(),
+            strong: false,
         }
     };
-    Comparison {
+    Estimates {
         title:
             "On exact data the errors of the paper's filter are many times its standard deviations"
                 .to_owned(),
-        subtitle: format!("One record, seed {SHOWN_SEED}"),
-        estimators: ["paper's filter", "default filter", "batch"]
-            .map(str::to_owned)
-            .into(),
-        quantities: (0..9).map(quantity).collect(),
-        columns: 3,
-        tints: Vec::new(),
-        reference_label: "true value".to_owned(),
+        models: models.map(|(name, tint)| (name.to_owned(), tint)).into(),
+        rows: (0..9).map(row).collect(),
+        note_head: String::new(),
     }
 }

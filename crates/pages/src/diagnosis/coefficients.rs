@@ -118,7 +118,7 @@ pub(crate) fn convergence(
         title: "Convergence of each coefficient".to_owned(),
         caption:
             "Estimate from the record up to each time, with a band of two standard deviations. \
-                  Early values may leave the panels; zoom in to see them."
+                  Early values may leave the panels."
                 .to_owned(),
         abscissa: "length of the record".to_owned(),
         abscissa_unit: time.unit.to_owned(),

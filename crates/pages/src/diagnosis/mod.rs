@@ -1,6 +1,7 @@
 //! The page of a diagnosis.
 
 pub(crate) mod coefficients;
+mod covariates;
 mod gain;
 mod limits;
 pub(crate) mod open_loop;
@@ -39,6 +40,7 @@ pub fn of_diagnosis(diagnosis: &Diagnosis<'_>, bench: &Bench) -> Result<Part, Pa
     sections.extend(coefficients::section(result, convergence));
     sections.push(limits::cannot_tell(result));
     sections.push(residuals::section(result, residuals::charts(diagnosis)));
+    sections.extend(covariates::magnitude(diagnosis, bench));
     sections.extend(gain::section(result, diagnosis.later.as_ref()));
     let best = diagnosis.extended.as_ref().unwrap_or(&diagnosis.nominal);
     sections.push(coefficients::site(best)?);

@@ -6,7 +6,7 @@ use gyrocal_record::{AXES, Bench, Record};
 use gyrocal_report::page::{Chart, Item, Panel, Section, TimeAxis};
 use gyrocal_statistics::{NORMAL_97_5, rms_of_present};
 
-use super::section;
+use super::{covariates, section};
 use crate::error::PageError;
 use crate::panels;
 use crate::words::{listed, micro_g};
@@ -34,6 +34,8 @@ pub(crate) fn sections(of: &Simulated<'_, '_>) -> Result<[Section; 2], PageError
     let sigma_g = fit.free_run_sigma_g(&best.simulated_g)?;
     let measured = columns(&of.record.accel_g);
     let chart = simulations(&time, measured, &nominal, extended.as_ref());
+    let left = residuals(of, (&time, &sigma_g), &nominal, extended.as_ref());
+    let against_force = covariates::against_force(of.record, &nominal);
     Ok([
         section(
             "simulation",
@@ -47,12 +49,11 @@ pub(crate) fn sections(of: &Simulated<'_, '_>) -> Result<[Section; 2], PageError
             "Open-loop residual",
             "Measured less simulated. A right model stays within the band, which holds the noise of the \
              accelerometers and what the noise of the gyros adds with time.",
-            vec![Item::Chart(residuals(
-                of,
-                (&time, &sigma_g),
-                &nominal,
-                extended.as_ref(),
-            ))],
+            [left]
+                .into_iter()
+                .chain(against_force)
+                .map(Item::Chart)
+                .collect(),
         ),
     ])
 }
@@ -72,9 +73,7 @@ fn simulations(
     });
     Chart {
         title: "Specific force, measured and simulated".to_owned(),
-        caption: "Over days the lines coincide at this scale; drag over a part to see them apart. Values \
-                  below the pointer stand above each panel."
-            .to_owned(),
+        caption: "Over days the lines coincide at this scale.".to_owned(),
         abscissa: "time from the first row".to_owned(),
         abscissa_unit: time.unit.to_owned(),
         quantity: "specific force".to_owned(),
@@ -139,6 +138,7 @@ fn residuals(
         quantity: "residual".to_owned(),
         unit: "g".to_owned(),
         same_scale: true,
+        cut_extremes: true,
         panels: panels.collect(),
         columns: 3,
         height_px: 240,

@@ -93,17 +93,27 @@ fn correlation(channels: Vec<ChannelCorrelation>) -> Chart {
     }
 }
 
+/// The strongest line above the threshold.
+fn strongest(spectra: &[ChannelSpectrum]) -> Option<&ChannelSpectrum> {
+    spectra
+        .iter()
+        .filter(|one| one.line_over_threshold > 1.0)
+        .max_by(|a, b| a.line_over_threshold.total_cmp(&b.line_over_threshold))
+}
+
+/// Period of the largest line, h.
+fn period(spectrum: &ChannelSpectrum) -> String {
+    let period_h = 1.0 / (3600.0 * spectrum.periodogram.line.frequency_hz);
+    format!("{} h", format::short(period_h, 3))
+}
+
 /// The strongest line, and whether it remains in the extended model.
 fn spectrum_title(spectra: &[ChannelSpectrum]) -> String {
     let over = |model: ModelVersion| {
         let of = spectra.iter().filter(move |one| one.model == model);
         of.map(|one| one.line_over_threshold).fold(0.0, f64::max)
     };
-    let strongest = spectra
-        .iter()
-        .filter(|one| one.line_over_threshold > 1.0)
-        .max_by(|a, b| a.line_over_threshold.total_cmp(&b.line_over_threshold));
-    match strongest {
+    match strongest(spectra) {
         None => "No spectral line of the innovations exceeds the detection threshold".to_owned(),
         Some(one) => {
             let after = match over(ModelVersion::Extended) {
@@ -112,8 +122,8 @@ fn spectrum_title(spectra: &[ChannelSpectrum]) -> String {
                 _ => "; one remains in the extended model",
             };
             format!(
-                "Strongest spectral line: period {} h, axis {}, {}, {:.1} times the threshold{after}",
-                format::short(1.0 / (3600.0 * one.periodogram.line.frequency_hz), 3),
+                "Strongest spectral line: period {}, axis {}, {}, {:.1} times the threshold{after}",
+                period(one),
                 AXES[one.axis],
                 look(one.model).0,
                 one.line_over_threshold
@@ -124,6 +134,14 @@ fn spectrum_title(spectra: &[ChannelSpectrum]) -> String {
 
 fn spectrum(spectra: Vec<ChannelSpectrum>, probability: f64) -> Chart {
     let title = spectrum_title(&spectra);
+    let mut marks = vec![Mark {
+        label: "sidereal day".to_owned(),
+        value: SIDEREAL_PER_DAY,
+    }];
+    marks.extend(strongest(&spectra).map(|one| Mark {
+        label: period(one),
+        value: one.periodogram.line.frequency_hz * SECONDS_PER_DAY,
+    }));
     let panels = (0..3).map(|axis| {
         let of_axis: Vec<_> = spectra.iter().filter(|one| one.axis == axis).collect();
         let frequency = of_axis.first().map(|one| &one.periodogram.frequency_hz);
@@ -140,17 +158,16 @@ fn spectrum(spectra: Vec<ChannelSpectrum>, probability: f64) -> Chart {
             ),
             value: one.periodogram.level,
         });
+        let samples = of_axis.first().map(|one| one.samples);
         Panel {
             name: AXES[axis].to_owned(),
+            note: samples.map_or_else(String::new, |count| format!("{count} innovations")),
             abscissa: frequency
                 .map(|all| all.iter().map(|hz| hz * SECONDS_PER_DAY).collect())
                 .unwrap_or_default(),
             lines: lines.collect(),
             levels: level.into_iter().collect(),
-            marks: vec![Mark {
-                label: "sidereal day".to_owned(),
-                value: SIDEREAL_PER_DAY,
-            }],
+            marks: marks.clone(),
             no_gaps: true,
             ..Panel::default()
         }

@@ -1,8 +1,7 @@
-//! The page of a diagnosis of any plant, and its pictures.
+//! The page of a diagnosis of any plant.
 
 mod limits;
 mod over_time;
-mod pictures;
 mod summary;
 mod tables;
 
@@ -17,8 +16,6 @@ use crate::diagnosis::{ranking, section};
 use crate::error::PageError;
 use crate::origin::{file_name, origin};
 use crate::ranked::Ranked;
-
-pub use pictures::{NamedPicture, plant_pictures};
 
 /// The page of a diagnosis of a plant; `name` is that of its record.
 ///

@@ -97,9 +97,7 @@ fn simulation(name: &str, series: &RecordSeries) -> Chart {
         )
     };
     Chart {
-        caption: "Where lines coincide at this scale, drag over a part to see them apart. Values below the \
-                  pointer stand above each panel."
-            .to_owned(),
+        caption: "Lines may coincide at this scale.".to_owned(),
         quantity: "output".to_owned(),
         ..chart(
             of_record(name, "Outputs, measured and simulated"),
@@ -139,6 +137,7 @@ pub(super) fn residual(title: String, series: &RecordSeries, whole: bool) -> Cha
     Chart {
         caption: "The band has the estimated noise of the sensor, not the declared one.".to_owned(),
         quantity: "residual".to_owned(),
+        cut_extremes: true,
         ..chart(title, &time, series.outputs.iter().map(panel).collect())
     }
 }

@@ -1,8 +1,11 @@
 //! Charts of a multi-position test.
 
+use gyrocal::generated::catalogue::OUTPUTS;
 use gyrocal_instruments::multi_position::{Finding, GyroReport, MultiPositionReport, PreparedTest};
 use gyrocal_report::page::{Band, Chart, Line, LineKind, Panel, Tint};
 use gyrocal_statistics::format;
+
+use crate::panels::line;
 
 pub(super) fn residuals(prepared: &PreparedTest, report: &MultiPositionReport) -> Chart {
     let found = !report.findings.is_empty();
@@ -54,7 +57,10 @@ pub(super) fn residuals(prepared: &PreparedTest, report: &MultiPositionReport) -
             ),
             false => format!("{before:.0} deg/h rms with the nominal law"),
         },
-        caption: "One point is one static stop.".to_owned(),
+        caption: format!(
+            "One point is one static stop; from the first to the last {} h.",
+            format::short(hours(&prepared.positions.time_s), 3)
+        ),
         abscissa: "stop".to_owned(),
         quantity: "residual".to_owned(),
         unit: "deg/h".to_owned(),
@@ -65,17 +71,28 @@ pub(super) fn residuals(prepared: &PreparedTest, report: &MultiPositionReport) -
     }
 }
 
+/// Length of a series, h.
+fn hours(time_s: &[f64]) -> f64 {
+    let ends = time_s.first().zip(time_s.last());
+    ends.map_or(0.0, |(first, last)| (last - first) / 3600.0)
+}
+
 pub(super) fn contributions(prepared: &PreparedTest, report: &MultiPositionReport) -> Chart {
     let panels = report.findings.iter().filter_map(|finding| {
         let gyro = report.gyros.get(finding.gyro)?;
         Some(contribution(prepared, gyro, finding))
     });
     Chart {
-        title: "Each term of the extended law in the stops".to_owned(),
-        caption: "Partial residuals with ±2 standard errors of a stop about the fitted term."
+        title: match &*report.findings {
+            [one] => format!("{} is missing from the nominal drift law", one.effect),
+            several => format!(
+                "{} terms are missing from the nominal drift law",
+                several.len()
+            ),
+        },
+        caption: "Partial residuals, gyro output less all other terms of the extended law, with ±2 standard errors \
+                  of a stop about the fitted term."
             .to_owned(),
-        abscissa: "regressor: specific force, or its product".to_owned(),
-        abscissa_unit: "g, g²".to_owned(),
         quantity: "rate".to_owned(),
         unit: "deg/h".to_owned(),
         panels: panels.collect(),
@@ -101,28 +118,47 @@ fn contribution(prepared: &PreparedTest, gyro: &GyroReport, finding: &Finding) -
         .map(|((at, residual), sigma)| [*at, residual + finding.estimate * at, sigma])
         .collect();
     rows.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    let fitted = |sign: f64| {
-        rows.iter()
-            .map(move |row| finding.estimate * row[0] + sign * 2.0 * row[2])
+    let fitted = |sigmas: f64| -> Vec<f64> {
+        let rows = rows.iter();
+        rows.map(|row| finding.estimate * row[0] + sigmas * row[2])
+            .collect()
     };
     let [estimate, sigma] = format::estimate(finding.estimate, finding.sigma);
     Panel {
         name: finding.effect.clone(),
         note: format!("{estimate} ± {sigma} {}", finding.unit).replace('-', "−"),
+        own_abscissa: Some(regressor(finding)),
         abscissa: rows.iter().map(|row| row[0]).collect(),
         bands: vec![Band {
-            label: "fitted term ±2 standard errors of a stop".to_owned(),
+            label: "±2 standard errors of a stop".to_owned(),
             tint: Tint::Extended,
-            lower: fitted(-1.0).collect(),
-            upper: fitted(1.0).collect(),
+            lower: fitted(-2.0),
+            upper: fitted(2.0),
         }],
-        lines: vec![Line {
-            label: "one static stop".to_owned(),
-            tint: Tint::Measured,
-            kind: LineKind::Points,
-            values: rows.iter().map(|row| row[1]).collect(),
-        }],
+        lines: vec![
+            line("fitted term", Tint::Extended, fitted(0.0)),
+            Line {
+                label: "one static stop".to_owned(),
+                tint: Tint::Measured,
+                kind: LineKind::Points,
+                values: rows.iter().map(|row| row[1]).collect(),
+            },
+        ],
         no_gaps: true,
         ..Panel::default()
+    }
+}
+
+/// Regressor of a term and its unit.
+fn regressor(finding: &Finding) -> (String, String) {
+    let factors = finding.term.factors(finding.gyro);
+    let names: Vec<&str> = factors.iter().map(|axis| OUTPUTS[*axis].label).collect();
+    match &*names {
+        [] => ("time since the first stop".to_owned(), "days".to_owned()),
+        [axis] => (format!("specific force {axis}"), "g".to_owned()),
+        axes => {
+            let factors: Vec<String> = axes.iter().map(|axis| format!("a_{axis}")).collect();
+            (factors.join(" "), format!("g^{}", axes.len()))
+        }
     }
 }

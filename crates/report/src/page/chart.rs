@@ -4,6 +4,8 @@ use serde::Serialize;
 
 use crate::check;
 use crate::error::Error;
+use crate::number::{count, readable_unit, short};
+use crate::scale;
 
 /// Panels with one abscissa, which zoom together.
 ///
@@ -30,6 +32,9 @@ pub struct Chart {
     pub logarithmic: bool,
     /// Whether all panels have one scale.
     pub same_scale: bool,
+    /// Whether a few extremes of lines about zero that would flatten all else leave the scale; the note of a
+    /// panel then tells how many.
+    pub cut_extremes: bool,
     /// Whether the panels have abscissas of different meaning and do not zoom together.
     pub unlinked: bool,
     /// Panels in a row.
@@ -49,6 +54,8 @@ pub struct Panel {
     pub note: String,
     /// Unit of its values, if it is not that of the chart.
     pub unit: Option<String>,
+    /// Quantity and unit of its abscissas, if they are not those of the chart.
+    pub own_abscissa: Option<(String, String)>,
     /// The abscissas; they never decrease.
     pub abscissa: Vec<f64>,
     /// Bands between two lines, drawn first.
@@ -182,6 +189,59 @@ impl Chart {
         }
         Ok(())
     }
+
+    /// Unit of the values of a panel.
+    pub(crate) fn unit_of<'a>(&'a self, panel: &'a Panel) -> &'a str {
+        panel.unit.as_deref().unwrap_or(&self.unit)
+    }
+
+    /// Quantity and unit of the abscissas of a panel.
+    pub(crate) fn abscissa_of<'a>(&'a self, panel: &'a Panel) -> (&'a str, &'a str) {
+        let own = panel.own_abscissa.as_ref();
+        let (quantity, unit) = own.map_or((&self.abscissa, &self.abscissa_unit), |(q, u)| (q, u));
+        (quantity, unit)
+    }
+
+    /// Half of the scale of each panel that leaves extremes out; `None` of one where all have a place.
+    pub(crate) fn halves(&self) -> Vec<Option<f64>> {
+        let of = |panels: &[Panel]| {
+            let lines = panels.iter().flat_map(|panel| &panel.lines);
+            let expected = panels.iter().map(Panel::largest_expected);
+            let least = 1.25 * expected.fold(0.0, f64::max);
+            scale::without_extremes(lines.map(|line| &*line.values), least)
+        };
+        match (self.cut_extremes, self.same_scale) {
+            (false, _) => vec![None; self.panels.len()],
+            (true, true) => vec![of(&self.panels); self.panels.len()],
+            (true, false) => {
+                let panels = self.panels.iter().map(core::slice::from_ref);
+                panels.map(of).collect()
+            }
+        }
+    }
+
+    /// The note of a panel, with what has no place on its scale.
+    pub(crate) fn note(&self, panel: &Panel, half: Option<f64>) -> String {
+        let half = half.unwrap_or(f64::INFINITY);
+        let values = panel.lines.iter().flat_map(|line| &line.values);
+        let beyond = values.map(|value| value.abs()).filter(|size| *size > half);
+        let (number, largest) = beyond.fold((0, 0.0_f64), |(number, largest), size| {
+            (number + 1, largest.max(size))
+        });
+        if number == 0 {
+            return panel.note.clone();
+        }
+        let (factor, unit) = readable_unit(self.unit_of(panel), largest);
+        let words = format!(
+            "{} beyond the scale, to {} {unit}",
+            count(number),
+            short(factor * largest, 2)
+        );
+        match &*panel.note {
+            "" => words,
+            note => format!("{note}; {words}"),
+        }
+    }
 }
 
 impl Panel {
@@ -196,8 +256,17 @@ impl Panel {
 
     /// The largest magnitude, nan aside.
     pub(crate) fn largest(&self) -> f64 {
-        let levels = self.levels.iter().map(|level| level.value);
-        let values = self.columns().flatten().copied().chain(levels);
-        values.map(f64::abs).fold(0.0, f64::max)
+        let lines = self.lines.iter().flat_map(|line| &line.values);
+        let largest = lines.map(|value| value.abs()).fold(0.0, f64::max);
+        largest.max(self.largest_expected())
+    }
+
+    /// The largest magnitude of bands and levels, nan aside.
+    fn largest_expected(&self) -> f64 {
+        let bands = self.bands.iter();
+        let edges = bands.flat_map(|band| band.lower.iter().chain(&band.upper));
+        let levels = self.levels.iter().map(|level| &level.value);
+        let all = edges.chain(levels);
+        all.map(|value| value.abs()).fold(0.0, f64::max)
     }
 }

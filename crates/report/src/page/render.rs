@@ -136,29 +136,28 @@ impl Drawing {
             Some(_) => panel.largest(),
             None => of_all,
         };
-        let unit_of = |panel: &Panel| panel.unit.as_deref().unwrap_or(&chart.unit).to_owned();
         let scaled = |panel: &Panel| match chart.logarithmic {
-            true => (1.0, unit_of(panel)),
-            false => readable_unit(&unit_of(panel), largest(panel)),
+            true => (1.0, chart.unit_of(panel).to_owned()),
+            false => readable_unit(chart.unit_of(panel), largest(panel)),
         };
-        let panels: Vec<Value> = chart
-            .panels
-            .iter()
-            .map(|panel| {
-                let (factor, unit) = scaled(panel);
-                self.panel(panel, factor, &unit)
-            })
-            .collect();
+        let panels = || chart.panels.iter().zip(chart.halves());
+        let drawn_panels = panels().map(|(panel, half)| {
+            let (factor, unit) = scaled(panel);
+            let mut drawn = self.panel(panel, factor, &unit);
+            drawn["abscissaTitle"] = axis(chart.abscissa_of(panel)).into();
+            drawn["half"] = half.map(|half| factor * half).into();
+            drawn
+        });
+        let drawn_panels: Vec<Value> = drawn_panels.collect();
         let mut drawn = json!({
             "id": &id,
-            "abscissa": axis(&chart.abscissa, &chart.abscissa_unit),
             "quantity": chart.quantity,
             "logX": chart.logarithmic_abscissa,
             "logY": chart.logarithmic,
             "sameScale": chart.same_scale,
             "linked": !chart.unlinked,
             "height": chart.height_px,
-            "panels": panels,
+            "panels": drawn_panels,
         });
         make_printable(&mut drawn);
         self.charts.push(drawn);
@@ -170,7 +169,7 @@ impl Drawing {
             "caption": chart.caption,
             "columns": chart.columns,
             "height": chart.height_px,
-            "panels": chart.panels.iter().map(|panel| description(chart, panel)).collect::<Vec<_>>(),
+            "panels": panels().map(|(panel, half)| description(chart, panel, half)).collect::<Vec<_>>(),
             "legend": legend(chart),
             "decimated": (most > MOST_ROWS).then(|| count(most)),
         })
@@ -230,20 +229,20 @@ impl Drawing {
 }
 
 /// Name, note and the text for those who do not see the picture.
-fn description(chart: &Chart, panel: &Panel) -> Value {
+fn description(chart: &Chart, panel: &Panel, half: Option<f64>) -> Value {
+    let note = chart.note(panel, half);
     let lines = panel.lines.iter().map(|line| &*line.label);
     let shown: Vec<&str> = lines.collect();
     json!({
         "name": panel.name,
-        "note": panel.note,
         "label": format!(
-            "{}: {} against {}. {}. {}",
+            "{}: {} against {}. {}. {note}",
             panel.name,
             shown.join(", "),
-            axis(&chart.abscissa, &chart.abscissa_unit),
+            axis(chart.abscissa_of(panel)),
             chart.title,
-            panel.note,
         ),
+        "note": note,
     })
 }
 
@@ -270,7 +269,7 @@ fn legend(chart: &Chart) -> Vec<Value> {
 }
 
 /// A quantity with its unit.
-fn axis(quantity: &str, unit: &str) -> String {
+fn axis((quantity, unit): (&str, &str)) -> String {
     match unit {
         "" => quantity.to_owned(),
         unit => format!("{quantity} [{unit}]"),

@@ -1,0 +1,180 @@
+//! Estimates of a page as a picture: a panel for each quantity, with a dot and an interval for each model.
+
+use crate::axes::{Axes, Labels};
+use crate::axis::Axis;
+use crate::canvas::{Align, Canvas, LineStyle, TextStyle};
+use crate::check;
+use crate::error::Error;
+use crate::figure::{Legend, figure};
+use crate::geometry::Rect;
+use crate::layout::Layout;
+use crate::page::{EstimateRow, Estimates, ValueWithSigma};
+use crate::picture::Picture;
+use crate::span::Span;
+use crate::style::{BLACK, DATA, SMALL, colour};
+use crate::text;
+
+/// Quantities side by side.
+const IN_A_ROW: usize = 3;
+
+/// Height of the row of a model, px.
+const ROW_PX: f64 = 17.0;
+
+/// Most of the width that names of models may take, px.
+const NAMES_PX: f64 = 170.0;
+
+impl Picture for Estimates {
+    fn to_svg_of(&self, source: &str) -> Result<String, Error> {
+        self.check()?;
+        let names = self.models.iter();
+        let widths = names.map(|(name, _)| text::width_px(name, SMALL, false));
+        let names_px = widths.fold(20.0, f64::max).min(NAMES_PX);
+        let panel_px = ROW_PX * self.models.len() as f64 + 10.0;
+        let layout = Layout::new(IN_A_ROW, self.rows.len(), panel_px)
+            .with_own_abscissae()
+            .with_left(34.0);
+        let remarks = match &*self.note_head {
+            "" => String::new(),
+            head => format!("At the right above each panel: {head}."),
+        };
+        Ok(figure(
+            &self.title,
+            &[&remarks, source],
+            &self.legend(),
+            layout.height(),
+            |canvas, mut body| {
+                body.left += names_px;
+                self.draw(canvas, layout, body, names_px);
+            },
+        ))
+    }
+}
+
+impl Estimates {
+    fn check(&self) -> Result<(), Error> {
+        check::non_empty("the list of models", &self.models)?;
+        check::non_empty("the list of quantities", &self.rows)?;
+        for row in &self.rows {
+            if row.values.len() != self.models.len() {
+                return Err(Error::UnequalLengths {
+                    what: format!("the list of estimates of {}", row.name),
+                    found: row.values.len(),
+                    against: "the models".to_owned(),
+                    expected: self.models.len(),
+                });
+            }
+            for one in &row.values {
+                let what = || format!("an estimate of {}", row.name);
+                check::not_infinite(what, &[one.value, one.sigma])?;
+            }
+        }
+        Ok(())
+    }
+
+    fn legend(&self) -> Vec<Legend> {
+        let models = self.models.iter();
+        let dots = models.map(|(name, tint)| Legend::dot(colour(*tint), name.as_str()));
+        let bar = LineStyle::solid(BLACK, DATA);
+        dots.chain([Legend::line(bar, "±2σ (95%)")]).collect()
+    }
+
+    fn draw(&self, canvas: &mut Canvas, layout: Layout, body: Rect, names_px: f64) {
+        let heights = Span {
+            lo: -0.8,
+            hi: self.models.len() as f64 - 0.2,
+        };
+        for (index, row) in self.rows.iter().enumerate() {
+            let frame = layout.frame(body, index);
+            let span = Span::of(row.values.iter().flat_map(ends));
+            let has_data = span.is_some();
+            let span = span.unwrap_or(Span { lo: 0.0, hi: 1.0 }).padded(0.08);
+            let ticks = (frame.width() / 50.0) as usize;
+            let axes = Axes {
+                frame,
+                x: Axis::linear(span, "", &row.unit, ticks),
+                y: Axis::bare(heights),
+            };
+            if layout.is_first_in_row(index) {
+                self.draw_names(canvas, &axes, names_px);
+            }
+            let labels = Labels {
+                name: &row.name,
+                note: &row.note,
+                abscissa: true,
+                ordinate_title: false,
+            };
+            axes.draw(canvas, labels, has_data, |axes, canvas| {
+                self.draw_row(canvas, axes, row);
+            });
+        }
+    }
+
+    /// The names of the models left of a panel.
+    fn draw_names(&self, canvas: &mut Canvas, axes: &Axes, names_px: f64) {
+        for (place, (name, _)) in self.models.iter().enumerate() {
+            let (_, y) = axes.point(0.0, self.height_of(place));
+            let name = text::fit(name, SMALL, false, names_px);
+            let style = TextStyle::new(SMALL, Align::End);
+            canvas.text(&name, (axes.frame.left - 8.0, y), style);
+        }
+    }
+
+    fn draw_row(&self, canvas: &mut Canvas, axes: &Axes, row: &EstimateRow) {
+        for (place, (one, (_, tint))) in row.values.iter().zip(&self.models).enumerate() {
+            let y = self.height_of(place);
+            let [lower, upper] = ends(one);
+            if lower < upper {
+                let bar = [axes.point(lower, y), axes.point(upper, y)];
+                canvas.line(&bar, LineStyle::solid(colour(*tint), DATA));
+            }
+            if !one.value.is_nan() {
+                canvas.disc(axes.point(one.value, y), 3.0, colour(*tint));
+            }
+        }
+    }
+
+    /// Ordinate of a model, the first on top.
+    fn height_of(&self, place: usize) -> f64 {
+        self.models.len() as f64 - 1.0 - place as f64
+    }
+}
+
+/// Both ends of an interval; without a sigma the value itself.
+fn ends(one: &ValueWithSigma) -> [f64; 2] {
+    let half = match one.sigma.is_nan() {
+        true => 0.0,
+        false => 2.0 * one.sigma,
+    };
+    [one.value - half, one.value + half]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::page::Tint;
+
+    #[test]
+    fn estimates_are_compared() {
+        let mut estimates = Estimates {
+            title: "Coefficients".to_owned(),
+            models: vec![("nominal model".to_owned(), Tint::Nominal)],
+            rows: vec![EstimateRow {
+                name: "gyro_x.bias".to_owned(),
+                unit: "deg/h".to_owned(),
+                values: vec![ValueWithSigma {
+                    value: 0.5,
+                    sigma: 0.1,
+                }],
+                note: "+3.1".to_owned(),
+                strong: false,
+            }],
+            note_head: "change".to_owned(),
+        };
+        let svg = estimates.to_svg().unwrap();
+        for words in ["gyro_x.bias", "nominal model", "+3.1", "panel: change."] {
+            assert!(svg.contains(words), "{words}");
+        }
+        estimates.rows[0].values.clear();
+        assert!(estimates.to_svg().is_err());
+    }
+}
