@@ -4,18 +4,11 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use gyrocal_answer::{Answer, Coefficients, Verdict, write_text};
-<<<<<<< HEAD
 use gyrocal_document::{Screen, Standing};
-use gyrocal_pages::{of_plant, plant_pictures};
-use gyrocal_plant::{
-    ColumnMap, Diagnosed, LoadedPlant, NamedRecord, PlantError, SearchOptions, diagnose_records,
-=======
-use gyrocal_diagnosis::prose::{Screen, Standing};
 use gyrocal_pages::{Part, of_plant, pictures};
 use gyrocal_plant::{
     ColumnMap, DiagnosedRecords, LoadedPlant, NamedRecord, PlantError, SearchOptions,
-    diagnose_records, sentences,
->>>>>>> 80a67e4cc4268644a3ba6875813b1ce0ff848d88
+    diagnose_records,
 };
 use gyrocal_record::{Manifest, Outputs, printable_path};
 use gyrocal_statistics::format;
