@@ -101,7 +101,8 @@ pub(crate) fn run(arguments: &AllanArguments) -> Result<Reply, Failure> {
     outputs::check(&inputs, json, arguments.views.figures())?;
     arguments.views.check(&inputs, &[("--json", json)])?;
     let analysed = analysed(arguments).map_err(|error| unusable(&arguments.log, error))?;
-    let mut answer = Reply::of(screen::first(&analysed), summary(arguments, &analysed));
+    let first = screen::first(&analysed);
+    let mut answer = Reply::of(first.clone(), summary(arguments, &analysed));
     let mut outputs = Outputs::new();
     if arguments.views.are_asked() {
         let shown = AllanAnswer {
@@ -111,7 +112,7 @@ pub(crate) fn run(arguments: &AllanArguments) -> Result<Reply, Failure> {
             estimator: arguments.estimator.of_library().description(),
             confidence: arguments.confidence,
         };
-        let part = of_allan(&shown);
+        let part = of_allan(&shown, first);
         arguments
             .views
             .stage(&arguments.log, part, &mut outputs, &mut answer)?;

@@ -83,10 +83,8 @@ pub(crate) fn run(arguments: &MonteCarloArguments) -> Result<Reply, Failure> {
             failure.message
         )));
     }
-    let mut answer = Reply::of(
-        screen::first(arguments, &summary),
-        summary::text(arguments, &summary),
-    );
+    let first = screen::first(arguments, &summary);
+    let mut answer = Reply::of(first.clone(), summary::text(arguments, &summary));
     if let Some(path) = &arguments.results {
         answer.wrote(path, "results of all runs");
     }
@@ -102,7 +100,7 @@ pub(crate) fn run(arguments: &MonteCarloArguments) -> Result<Reply, Failure> {
     };
     let mut outputs = Outputs::new();
     if arguments.views.are_asked() {
-        let part = of_monte_carlo(&report);
+        let part = of_monte_carlo(&report, first);
         arguments
             .views
             .stage(&arguments.scenario, part, &mut outputs, &mut answer)?;

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use gyrocal_pages::{PageError, Part, page, pictures as charts};
 use gyrocal_record::Outputs;
+use gyrocal_report::to_html;
 use miette::miette;
 
 use crate::outputs::{refuse_overlap, refuse_unwritable};
@@ -32,8 +33,7 @@ pub(crate) fn check(
 
 /// Stages a report, to be committed with the other outputs.
 pub(crate) fn stage(path: &Path, parts: Vec<Part>, outputs: &mut Outputs) -> Result<(), Failure> {
-    let html = page(parts)
-        .to_html()
+    let html = to_html(&page(parts))
         .map_err(|reason| Failure::Work(miette!("{}: no report: {reason}", path.display())))?;
     outputs.stage(path, html.as_bytes())?;
     Ok(())

@@ -109,12 +109,13 @@ pub(crate) fn run(arguments: &TumbleArguments) -> Result<Reply, Failure> {
         Report::Few(report) => text += &few::text(report, arguments.false_alarm),
     }
     not_identifiable(&mut text, &prepared);
-    let mut answer = Reply::of(screen::first(arguments, &prepared, &report), text);
+    let first = screen::first(arguments, &prepared, &report);
+    let mut answer = Reply::of(first.clone(), text);
     // The folder of pictures first: the result for programs may go there too.
     match &report {
         Report::Many(report) if arguments.views.are_asked() => {
             let manifest = manifest(MODEL_HASH, arguments.seed, &inputs)?;
-            let part = of_tumble(&manifest, &prepared, report);
+            let part = of_tumble(&manifest, &prepared, report, first);
             let (log, views) = (&arguments.logs[0], &arguments.views);
             views.stage(log, part, &mut outputs, &mut answer)?;
         }

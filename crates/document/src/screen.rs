@@ -68,6 +68,15 @@ impl Screen {
         }
     }
 
+    /// The verdict, and the thing that it is on.
+    #[must_use]
+    pub fn headline(&self) -> String {
+        match self.what.is_empty() {
+            true => self.verdict.clone(),
+            false => format!("{}: {}", self.verdict, self.what),
+        }
+    }
+
     /// Adds a fact, unless there is nothing to say.
     pub fn fact(&mut self, label: &str, words: impl Into<String>) {
         let words = words.into();

@@ -7,7 +7,7 @@ use gyrocal_pages::of_result;
 use gyrocal_record::SourceText;
 use gyrocal_testkit::contracts::{schema_of, violations};
 use gyrocal_testkit::run;
-use gyrocal_words::{diagnosis, first_screen};
+use gyrocal_words::diagnosis;
 use serde::{Deserialize, Serialize};
 
 use crate::before::gyrocal;
@@ -103,21 +103,14 @@ fn settled(answer: &Answer) -> Vec<String> {
     if answer.verdict != Verdict::NotSettled {
         places.push("verdict".to_owned());
     }
-    let words = match answer.subject {
-        Subject::Plant(_) => gyrocal_words::plant::verdict(answer),
-        _ => first_screen(answer).verdict,
-    };
-    if !words.to_lowercase().contains("not settled") {
-        places.push(format!("first screen: {words}"));
-    }
     let page = of_result(answer);
-    let headline = &page.summary.headline;
-    if !headline.to_lowercase().contains("not settled") {
-        places.push(format!("page: {headline}"));
+    let first = page.first.headline();
+    if !first.to_lowercase().contains("not settled") {
+        places.push(format!("first screen: {first}"));
     }
     let said = match answer.subject {
         Subject::Plant(_) => gyrocal_words::plant::all(answer).join(" "),
-        _ => format!("{:?} {:?}", first_screen(answer), diagnosis(answer)),
+        _ => format!("{:?}", diagnosis(answer)),
     };
     let said = format!("{said} {page:?}");
     let claims = CLAIMS.iter().filter(|claim| said.contains(**claim));

@@ -1,6 +1,6 @@
 //! The sentences and tables of what a fleet shows.
 
-use gyrocal_document::{Column, List, Table, Words};
+use gyrocal_document::{Column, List, Screen, Standing, Table, Words};
 use gyrocal_statistics::format;
 use gyrocal_words::counted;
 
@@ -47,6 +47,25 @@ pub fn all(fleet: &FleetResult) -> Vec<Words> {
     let problems = problems.map(|one| format!("{}/{}: {}", one.unit, one.record, one.problem));
     blocks.extend(list("Records that are left out", problems.collect()));
     blocks
+}
+
+/// The first screen: what recurs, and what differs.
+#[must_use]
+pub fn first_screen(fleet: &FleetResult) -> Screen {
+    let is_clean = fleet.recurring.is_empty() && fleet.groups.is_empty();
+    let (standing, words) = match is_clean {
+        true => (Standing::Good, "NOTHING BEYOND SINGLE UNITS"),
+        false => (Standing::Bad, "UNITS SHARE CAUSES"),
+    };
+    let mut screen = Screen::new(standing, words, verdict(fleet));
+    for cause in &fleet.recurring {
+        screen.fact("recurs", recurring(cause));
+    }
+    for one in &fleet.groups {
+        screen.fact("differs", group(one));
+    }
+    screen.fact("fleet", size(fleet));
+    screen
 }
 
 /// Number of units and records.

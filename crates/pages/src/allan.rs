@@ -1,10 +1,10 @@
 //! The page of Allan deviations.
 
+use gyrocal_document::{
+    Band, Cell, Chart, Column, Item, Line, LineKind, Panel, Part, Screen, Table, Tint,
+};
 use gyrocal_instruments::AllanColumn;
 use gyrocal_record::Manifest;
-use gyrocal_report::page::{
-    Band, Card, Cell, Chart, Column, Item, Line, LineKind, Panel, Part, Summary, Table, Tint, Tone,
-};
 use gyrocal_statistics::allan::NoiseFit;
 use gyrocal_statistics::format;
 
@@ -28,17 +28,21 @@ pub struct AllanAnswer<'a> {
 
 /// The page of Allan deviations.
 #[must_use]
-pub fn of_allan(answer: &AllanAnswer<'_>) -> Part {
+pub fn of_allan(answer: &AllanAnswer<'_>, first: Screen) -> Part {
     let mut sections = vec![section(
         "deviation",
         "Deviations",
-        "A slope of −1/2 is white noise of the rate (angle random walk), a flat part bias instability, a \
-         slope of +1/2 a random walk of the rate.",
+        &format!(
+            "{}, intervals at a confidence of {}. A slope of −1/2 is white noise of the rate (angle random \
+             walk), a flat part bias instability, a slope of +1/2 a random walk of the rate.",
+            crate::words::capitalised(answer.estimator),
+            format::percent(answer.confidence)
+        ),
         vec![Item::Chart(chart(answer))],
     )];
     let tables = answer.columns.iter().filter_map(|column| {
         let noise = column.noise.as_ref()?;
-        Some(Item::Table(parts(&column.name, noise, answer.unit)))
+        Some(Item::from(parts(&column.name, noise, answer.unit)))
     });
     let tables: Vec<Item> = tables.collect();
     if !tables.is_empty() {
@@ -52,55 +56,21 @@ pub fn of_allan(answer: &AllanAnswer<'_>) -> Part {
     let points = answer
         .columns
         .iter()
-        .map(|column| Item::Table(points(column, answer)));
+        .map(|column| Item::from(points(column, answer)));
     sections.push(section(
         "points",
         "Tables",
         "The deviation at each averaging time with its confidence interval.",
         points.collect(),
     ));
-    let cards = answer
-        .columns
-        .iter()
-        .map(|column| card(column, answer.unit));
     let names: Vec<&str> = answer.columns.iter().map(|column| &*column.name).collect();
     Part {
         name: file_name(answer.manifest, 0, "log"),
         size: crate::words::listed(&names),
-        summary: Summary {
-            tone: Tone::Plain,
-            headline: "Noise of the gyros".to_owned(),
-            sentence: format!(
-                "{}, intervals at a confidence of {}.",
-                crate::words::capitalised(answer.estimator),
-                format::percent(answer.confidence)
-            ),
-            cards: cards.collect(),
-        },
+        first,
         sections,
         origin: origin(answer.manifest),
     }
-}
-
-fn card(column: &AllanColumn, unit: &str) -> Card {
-    let mut card = Card {
-        title: column.name.clone(),
-        columns: 4,
-        ..Card::default()
-    };
-    match &column.noise {
-        Some(noise) => {
-            let mut table = parts("", noise, unit);
-            table.columns.remove(2);
-            for row in &mut table.rows {
-                row.remove(2);
-            }
-            card.text = vec![format!("test of fit: {}", format::p_value(noise.p_value))];
-            card.table = Some(table);
-        }
-        None => card.text = vec!["Too few averaging times for a fit.".to_owned()],
-    }
-    card
 }
 
 fn chart(answer: &AllanAnswer<'_>) -> Chart {

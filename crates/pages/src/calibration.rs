@@ -1,12 +1,12 @@
 //! The page of a calibration.
 
 use gyrocal_calibration::FittedPlatform;
+use gyrocal_document::{
+    Cell, Column, EstimateRow, Estimates, Item, List, Part, Screen, Section, Standing, Table, Tint,
+    ValueWithSigma,
+};
 use gyrocal_record::{
     Bench, CalibrationReport, Coefficient, FitVerdict, NoiseReport, Record, RunReport,
-};
-use gyrocal_report::page::{
-    Card, Cell, Column, EstimateRow, Estimates, Item, List, Part, Section, Summary, Table, Tint,
-    Tone, ValueWithSigma,
 };
 use gyrocal_statistics::format;
 use gyrocal_words::{first_input_files, record_and_bench};
@@ -48,7 +48,7 @@ pub fn of_calibration(
     if let Some(first) = records.first() {
         sections.push(coefficients::site(first.fit)?);
     }
-    let runs: Vec<Item> = runs(report).into_iter().map(Item::Table).collect();
+    let runs: Vec<Item> = runs(report).into_iter().map(Item::from).collect();
     if !runs.is_empty() {
         sections.push(section(
             "records",
@@ -67,10 +67,61 @@ pub fn of_calibration(
             ),
         },
         size: format!("{} rows used", report.rows),
-        summary: summary(report),
+        first: first_screen(report),
         sections,
         origin: origin(&report.manifest),
     })
+}
+
+/// The first screen of a written calibration.
+fn first_screen(report: &CalibrationReport) -> Screen {
+    let (standing, verdict) = match report.verdict {
+        FitVerdict::Consistent => (Standing::Good, "CALIBRATED"),
+        FitVerdict::EffectsFound => (Standing::Bad, "FAULT"),
+        FitVerdict::TooLarge | FitVerdict::TooSmall | FitVerdict::NoiseDiffers => {
+            (Standing::Doubtful, "MISFIT")
+        }
+        FitVerdict::Unexplained => (Standing::Bad, "UNEXPLAINED"),
+        _ => (Standing::Bad, "SET-UP WRONG"),
+    };
+    let mut screen = Screen::new(standing, verdict, &*report.verdict_text);
+    if report.verdict == FitVerdict::Setup {
+        for problem in &report.setup {
+            screen.fact("what is wrong", problem.text());
+        }
+        return screen;
+    }
+    let shown = report.effects.iter().filter(|test| test.significant);
+    let effects: Vec<&str> = shown.filter_map(|test| test.effect.as_deref()).collect();
+    screen.fact("first sign", listed(&effects));
+    let open = report.coefficients.iter().filter(|one| !one.determined);
+    let open: Vec<&str> = open.map(|one| &*one.name).collect();
+    screen.fact("not determined", listed(&open));
+    let rows = report.coefficients.iter().map(|one| {
+        let [estimate, sigma] = format::estimate(one.estimate, one.sigma);
+        [
+            one.name.clone(),
+            format!("{estimate} ± {sigma}"),
+            one.unit.clone(),
+        ]
+    });
+    screen.table = Some(Table::new(
+        "Drift coefficients",
+        vec![
+            Column::words("coefficient"),
+            Column::numbers("estimate ± σ"),
+            Column::words("unit"),
+        ],
+        rows,
+    ));
+    let inputs = &report.manifest.inputs;
+    let files = first_input_files(inputs).unwrap_or_else(|| record_and_bench(inputs));
+    let why = match report.verdict {
+        FitVerdict::Consistent => "tests for all else, and says what could go undetected",
+        _ => "looks for the causes",
+    };
+    screen.then(format!("gyrocal diagnose {files}"), why);
+    screen
 }
 
 /// The sections over time of a record; of several with its number in their anchors.
@@ -101,125 +152,6 @@ fn over_time(
         }
     }
     Ok(sections)
-}
-
-fn summary(report: &CalibrationReport) -> Summary {
-    let (tone, headline) = match report.verdict {
-        FitVerdict::Consistent => (Tone::Good, "The record fits the model".to_owned()),
-        FitVerdict::EffectsFound => {
-            let shown = report.effects.iter().filter(|test| test.significant);
-            let effects: Vec<&str> = shown.filter_map(|test| test.effect.as_deref()).collect();
-            let of = match &*effects {
-                [] => String::new(),
-                some => format!(": first sign {}", listed(some)),
-            };
-            (Tone::Found, format!("The model lacks an effect{of}"))
-        }
-        FitVerdict::TooLarge => (
-            Tone::Bad,
-            "Innovations larger than declared noise".to_owned(),
-        ),
-        FitVerdict::TooSmall => (
-            Tone::Found,
-            "Innovations smaller than declared noise".to_owned(),
-        ),
-        FitVerdict::Unexplained => (
-            Tone::Bad,
-            "The innovations are not white, and no effect of the catalogue is significant"
-                .to_owned(),
-        ),
-        FitVerdict::NoiseDiffers => (
-            Tone::Found,
-            "The noise differs from the declared".to_owned(),
-        ),
-        _ => (Tone::Bad, "Wrong set-up: nothing was estimated".to_owned()),
-    };
-    let mut cards = Vec::new();
-    if report.verdict == FitVerdict::Setup {
-        cards.push(Card {
-            title: "What is wrong with the set-up".to_owned(),
-            text: report.setup.iter().map(|problem| problem.text()).collect(),
-            columns: 12,
-            ..Card::default()
-        });
-    } else {
-        cards.push(Card {
-            title: "Drift coefficients".to_owned(),
-            table: Some(coefficient_table(&report.coefficients)),
-            columns: 7,
-            ..Card::default()
-        });
-        cards.push(next(report));
-    }
-    Summary {
-        tone,
-        headline,
-        sentence: report.verdict_text.clone(),
-        cards,
-    }
-}
-
-fn coefficient_table(all: &[Coefficient]) -> Table {
-    let column = |head: &str, is_number| Column {
-        head: head.to_owned(),
-        is_number,
-    };
-    let rows = all.iter().map(|one| {
-        let [estimate, sigma] = format::estimate(one.estimate, one.sigma);
-        vec![
-            Cell::from(one.name.clone()),
-            Cell::from(format!("{estimate} ± {sigma}")),
-            Cell::from(one.unit.clone()),
-            Cell {
-                text: if one.determined { "yes" } else { "no" }.to_owned(),
-                strong: !one.determined,
-            },
-        ]
-    });
-    Table {
-        title: String::new(),
-        columns: vec![
-            column("coefficient", false),
-            column("estimate ± σ", true),
-            column("unit", false),
-            column("determined", false),
-        ],
-        rows: rows.collect(),
-    }
-}
-
-/// What to do next, and what is not determined.
-fn next(report: &CalibrationReport) -> Card {
-    let mut text = Vec::new();
-    let open: Vec<&str> = report
-        .coefficients
-        .iter()
-        .filter(|one| !one.determined)
-        .map(|one| &*one.name)
-        .collect();
-    text.push(match &*open {
-        [] => "All nine coefficients are determined.".to_owned(),
-        some => format!("Not determined: {}.", listed(some)),
-    });
-    text.push(match report.verdict {
-        FitVerdict::Consistent => {
-            "The diagnosis tests for all else, and says what could go undetected.".to_owned()
-        }
-        FitVerdict::NoiseDiffers | FitVerdict::TooLarge | FitVerdict::TooSmall => {
-            "The sigmas are not those of this noise: the diagnosis looks for the causes.".to_owned()
-        }
-        _ => "The coefficients may be biased: the diagnosis looks for the causes.".to_owned(),
-    });
-    Card {
-        title: "Next step".to_owned(),
-        text,
-        command: format!("gyrocal diagnose {}", {
-            let inputs = &report.manifest.inputs;
-            first_input_files(inputs).unwrap_or_else(|| record_and_bench(inputs))
-        }),
-        columns: 5,
-        ..Card::default()
-    }
 }
 
 fn estimates(report: &CalibrationReport) -> Section {
@@ -275,7 +207,7 @@ fn undetermined(report: &CalibrationReport) -> Option<Section> {
             "limits",
             "What cannot be told apart",
             "Combinations of coefficients, each over its prior sigma, of which the record says little.",
-            vec![Item::List(List {
+            vec![Item::from(List {
                 title: String::new(),
                 entries,
             })],
@@ -284,10 +216,6 @@ fn undetermined(report: &CalibrationReport) -> Option<Section> {
 }
 
 fn runs(report: &CalibrationReport) -> Vec<Table> {
-    let column = |head: &str, is_number| Column {
-        head: head.to_owned(),
-        is_number,
-    };
     let angles = |deg: [f64; 3]| {
         deg.map(|angle| format!("{angle:.3}"))
             .join(", ")
@@ -307,19 +235,19 @@ fn runs(report: &CalibrationReport) -> Vec<Table> {
     let mut tables = vec![Table {
         title: "Attitude: angles about x, y, z".to_owned(),
         columns: vec![
-            column("record", false),
-            column("rows", true),
-            column("first row, deg", true),
-            column("last row, deg", true),
+            Column::words("record"),
+            Column::numbers("rows"),
+            Column::numbers("first row, deg"),
+            Column::numbers("last row, deg"),
         ],
         rows: attitudes,
     }];
     tables.push(Table {
         title: "Estimated over declared noise: x, y, z".to_owned(),
         columns: vec![
-            column("record", false),
-            column("accelerometers", true),
-            column("gyros", true),
+            Column::words("record"),
+            Column::numbers("accelerometers"),
+            Column::numbers("gyros"),
         ],
         rows: noises,
     });

@@ -1,13 +1,10 @@
 //! The page of a fleet.
 
+use gyrocal_document::{Bar, BarGroup, Bars, Cell, Column, Item, Part, Table, Tint};
 use gyrocal_fleet::{FleetResult, prose};
-use gyrocal_report::page::{
-    Bar, BarGroup, Bars, Card, Cell, Column, Item, Part, Summary, Table, Tint, Tone,
-};
 use gyrocal_statistics::format;
 use gyrocal_words::counted;
 
-use crate::blocks;
 use crate::diagnosis::section;
 use crate::origin::origin;
 
@@ -21,14 +18,14 @@ pub fn of_fleet(fleet: &FleetResult) -> Part {
         "coefficients",
         "Coefficients over the units",
         "Mean and spread of the units, with 95 % intervals. The spread is without the errors of the estimates.",
-        vec![Item::Table(blocks::table(&prose::coefficients(fleet)))],
+        vec![Item::from(prose::coefficients(fleet))],
     )];
     if !fleet.recurring.is_empty() {
         sections.push(section(
             "recurring",
             "Causes that recur",
             "Too weak for one record, and in more units than chance puts them.",
-            vec![Item::Bars(evidence(fleet)), Item::Table(units(fleet))],
+            vec![Item::Bars(evidence(fleet)), Item::from(units(fleet))],
         ));
     }
     let levels = fleet.coefficients.iter().map(|one| {
@@ -76,7 +73,7 @@ pub fn of_fleet(fleet: &FleetResult) -> Part {
         "words",
         "In words",
         "All that the fleet shows.",
-        blocks::items(&prose::all(fleet)),
+        prose::all(fleet).into_iter().map(Item::Words).collect(),
     ));
     Part {
         name: "fleet".to_owned(),
@@ -85,46 +82,9 @@ pub fn of_fleet(fleet: &FleetResult) -> Part {
             counted(fleet.units, "unit"),
             counted(fleet.records, "record")
         ),
-        summary: summary(fleet),
+        first: prose::first_screen(fleet),
         sections,
         origin: origin(&fleet.manifest),
-    }
-}
-
-fn summary(fleet: &FleetResult) -> Summary {
-    let is_clean = fleet.recurring.is_empty() && fleet.groups.is_empty();
-    let card = |title: &str, text: Vec<String>| Card {
-        title: title.to_owned(),
-        main: match text.len() {
-            0 => "none".to_owned(),
-            count => count.to_string(),
-        },
-        text,
-        columns: 6,
-        ..Card::default()
-    };
-    Summary {
-        tone: if is_clean { Tone::Good } else { Tone::Found },
-        headline: if is_clean {
-            "Nothing beyond single units".to_owned()
-        } else {
-            format!(
-                "{} in many units, {} that differ",
-                counted(fleet.recurring.len(), "cause"),
-                counted(fleet.groups.len(), "group")
-            )
-        },
-        sentence: prose::verdict(fleet),
-        cards: vec![
-            card(
-                "Causes that recur",
-                fleet.recurring.iter().map(prose::recurring).collect(),
-            ),
-            card(
-                "Batches and sites that differ",
-                fleet.groups.iter().map(prose::group).collect(),
-            ),
-        ],
     }
 }
 
@@ -149,10 +109,6 @@ fn evidence(fleet: &FleetResult) -> Bars {
 
 /// Units that are likely to have a recurring cause.
 fn units(fleet: &FleetResult) -> Table {
-    let column = |head: &str, is_number| Column {
-        head: head.to_owned(),
-        is_number,
-    };
     let rows = fleet.recurring.iter().flat_map(|cause| {
         cause.units.iter().map(|one| {
             vec![
@@ -165,9 +121,9 @@ fn units(fleet: &FleetResult) -> Table {
     Table {
         title: "Units that are more likely than not to have it".to_owned(),
         columns: vec![
-            column("effect", false),
-            column("unit", false),
-            column("probability", true),
+            Column::words("effect"),
+            Column::words("unit"),
+            Column::numbers("probability"),
         ],
         rows: rows.collect(),
     }

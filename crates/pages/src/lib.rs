@@ -1,7 +1,7 @@
 //! Content of the HTML pages of gyrocal's answers: the page of `gyrocal report` and of `--report`.
 //!
 //! Each function makes a [`Part`] of one answer: the summary for the first screen, sections with
-//! charts and tables, and the origin. [`page`] puts parts together, [`Page::to_html`] makes a file of
+//! charts and tables, and the origin. [`page`] puts parts together, `gyrocal_report::to_html` makes a file of
 //! them. Sentences are those of the libraries ([`gyrocal_words`] and others); this crate
 //! chooses and arranges.
 //!
@@ -25,7 +25,6 @@
 //! It reads and writes no files, fits nothing, and knows nothing of HTML.
 
 mod allan;
-mod blocks;
 mod calibration;
 mod diagnosis;
 mod error;
@@ -48,7 +47,7 @@ pub use calibration::{CalibratedRecord, of_calibration};
 pub use diagnosis::of_diagnosis;
 pub use error::PageError;
 pub use fleet::of_fleet;
-pub use gyrocal_report::page::{Page, Part};
+pub use gyrocal_document::{Page, Part};
 pub use monte_carlo::of_monte_carlo;
 pub use pictures::pictures;
 pub use plan::of_plan;
@@ -69,7 +68,7 @@ pub fn of_result(answer: &Answer) -> Part {
 #[must_use]
 pub fn page(parts: Vec<Part>) -> Page {
     let title = match &*parts {
-        [one] => format!("{}: {}", one.name, one.summary.headline),
+        [one] => format!("{}: {}", one.name, one.first.headline()),
         several => format!("{} records", several.len()),
     };
     Page { title, parts }

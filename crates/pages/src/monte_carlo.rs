@@ -1,9 +1,9 @@
 //! The page of a calibration over many simulated records.
 
-use gyrocal_evaluation::{BandedMean, CalibrationSummary, MeasuredValue, MonteCarloReport};
-use gyrocal_report::page::{
-    Bar, BarGroup, Bars, Card, Cell, Column, Item, List, Part, Section, Summary, Table, Tint, Tone,
+use gyrocal_document::{
+    Bar, BarGroup, Bars, Cell, Column, Item, List, Part, Screen, Section, Table, Tint,
 };
+use gyrocal_evaluation::{CalibrationSummary, MeasuredValue, MonteCarloReport};
 use gyrocal_statistics::format;
 
 use crate::diagnosis::section;
@@ -17,7 +17,7 @@ const COVERED: f64 = 0.95;
 
 /// The page of a calibration over many simulated records.
 #[must_use]
-pub fn of_monte_carlo(report: &MonteCarloReport) -> Part {
+pub fn of_monte_carlo(report: &MonteCarloReport, first: Screen) -> Part {
     let summary = &report.summary;
     let mut sections = vec![section(
         "coefficients",
@@ -27,78 +27,21 @@ pub fn of_monte_carlo(report: &MonteCarloReport) -> Part {
         vec![
             Item::Bars(errors(summary)),
             Item::Bars(coverage(summary)),
-            Item::Table(coefficients(summary)),
+            Item::from(coefficients(summary)),
         ],
     )];
     sections.extend(failures(summary));
-    let [first, after] = report.seeds;
+    let [lowest, after] = report.seeds;
     let what = match report.population {
         true => "scenarios of a population",
         false => "seeds",
     };
     Part {
         name: file_name(&report.manifest, 0, "scenario"),
-        size: format!("{what} {first} to {}", after.saturating_sub(1)),
-        summary: first_screen(summary),
+        size: format!("{what} {lowest} to {}", after.saturating_sub(1)),
+        first,
         sections,
         origin: origin(&report.manifest),
-    }
-}
-
-fn first_screen(summary: &CalibrationSummary) -> Summary {
-    let (tone, headline) = match summary.is_consistent() {
-        true => (Tone::Good, "Consistent"),
-        false => (Tone::Bad, "Inconsistent"),
-    };
-    let mut cards = Vec::new();
-    let bands = [
-        ("Errors (NEES)", summary.nees_determined),
-        ("Innovations (NIS)", summary.nis),
-    ];
-    for (title, banded) in bands {
-        cards.extend(banded.map(|banded| band(title, &banded)));
-    }
-    if let Some(share) = summary.consistent {
-        cards.push(Card {
-            title: "Runs in their band".to_owned(),
-            main: format!("{:.1} %", 100.0 * share.value),
-            text: vec![format!(
-                "95 % interval {}; NIS of a run within its 99.9 % band",
-                interval(share, 100.0, 1)
-            )],
-            columns: 4,
-            ..Card::default()
-        });
-    }
-    Summary {
-        tone,
-        headline: headline.to_owned(),
-        sentence: format!(
-            "{} runs were calibrated, {} failed: {}.",
-            summary.runs,
-            summary.failures.len(),
-            summary.verdict()
-        ),
-        cards,
-    }
-}
-
-fn band(title: &str, banded: &BandedMean) -> Card {
-    let [low, high] = banded.band;
-    let holds = match banded.holds() {
-        true => "inside",
-        false => "outside",
-    };
-    Card {
-        title: title.to_owned(),
-        main: format!("{:.3}", banded.mean),
-        number: format!("{:.3} expected", banded.expected),
-        text: vec![format!(
-            "{holds} the 99.9 % band {low:.3} to {high:.3} of the mean; median {:.3}",
-            banded.median
-        )],
-        columns: 4,
-        ..Card::default()
     }
 }
 
@@ -212,7 +155,7 @@ fn failures(summary: &CalibrationSummary) -> Option<Section> {
             "failures",
             "Failed runs",
             "Each seed can be simulated by itself: simulate --seed.",
-            vec![Item::List(List { title, entries })],
+            vec![Item::from(List { title, entries })],
         )
     })
 }
@@ -220,7 +163,7 @@ fn failures(summary: &CalibrationSummary) -> Option<Section> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use gyrocal_evaluation::{CoefficientSummary, Failure};
+    use gyrocal_evaluation::{BandedMean, CoefficientSummary, Failure};
     use gyrocal_record::{Input, Manifest};
 
     #[test]
@@ -274,14 +217,16 @@ mod tests {
                 }],
             },
         };
-        let html = crate::page(vec![of_monte_carlo(&report)]).to_html();
+        let first = Screen::new(gyrocal_document::Standing::Bad, "INCONSISTENT", "too large");
+        let html = gyrocal_report::to_html(&crate::page(vec![of_monte_carlo(
+            &report,
+            Screen::default(),
+        )]));
         let html = html.unwrap_or_default();
         for words in [
             "s.toml",
             "seeds 0 to 11",
-            "Inconsistent",
-            "errors are not as large as the sigmas say",
-            "outside the 99.9 % band 2.900 to 3.100",
+            "INCONSISTENT",
             "seed 7: lost",
             "gyro_x.bias",
             "0.930 (0.900 to 0.960)",

@@ -1,7 +1,7 @@
 //! Origin of an answer.
 
+use gyrocal_document::{Origin, OriginFile};
 use gyrocal_record::Manifest;
-use gyrocal_report::page::{Origin, OriginFile};
 
 /// Program, command and files of a manifest.
 pub(crate) fn origin(manifest: &Manifest) -> Origin {

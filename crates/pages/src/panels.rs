@@ -1,7 +1,7 @@
 //! Panels that the pages of all models have: measured and simulated values over time, what the models leave
 //! of them, and its correlation over rows.
 
-use gyrocal_report::page::{Band, Line, LineKind, Panel, Tint};
+use gyrocal_document::{Band, Line, LineKind, Panel, Tint};
 
 /// Names of the models in legends.
 pub(crate) const NOMINAL: &str = "nominal model";

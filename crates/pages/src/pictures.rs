@@ -1,6 +1,6 @@
 //! Pictures of an answer: the charts of its page.
 
-use gyrocal_report::page::{Item, Part};
+use gyrocal_document::{Item, Part};
 use gyrocal_report::{Error, Picture};
 
 /// A picture with the name of what it is of.
@@ -25,7 +25,7 @@ pub fn pictures(part: Part) -> Vec<(String, Box<dyn Picture>)> {
     let mut pictures: Vec<(String, Box<dyn Picture>)> = Vec::new();
     for section in part.sections {
         let title = section.title;
-        let source = format!("{title}: {}. {}.", part.name, part.summary.headline);
+        let source = format!("{title}: {}. {}.", part.name, part.first.headline());
         let drawn = section.items.into_iter();
         let drawn = drawn.filter_map(|item| picture(item, &title));
         for (place, picture) in drawn.enumerate() {

@@ -1,29 +1,21 @@
 //! The page of a planned next run.
 
 use gyrocal_design::{AttitudeOf, Forecast, PlanResult, Proposal, prose};
-use gyrocal_document::Words;
-use gyrocal_report::page::{
-    Bar, BarGroup, Bars, Card, Cell, Column, Item, Part, Summary, Table, Tint, Tone,
-};
+use gyrocal_document::{Bar, BarGroup, Bars, Cell, Column, Item, Part, Table, Tint};
 use gyrocal_statistics::format;
 use gyrocal_words::counted;
 
-use crate::blocks;
 use crate::diagnosis::section;
 use crate::origin::{file_name, origin};
-
-/// Entries of the recommendation on the first screen.
-const SHOWN: usize = 3;
 
 /// The page of a plan.
 #[must_use]
 pub fn of_plan(plan: &PlanResult) -> Part {
-    let blocks = prose(plan);
     let mut sections = vec![section(
         "sigmas",
         "What the run gives",
         "Standard deviations of the coefficients: of the record so far, and of record and next run together.",
-        vec![Item::Table(sigmas(plan))],
+        vec![Item::from(sigmas(plan))],
     )];
     if !plan.proposals.is_empty() {
         sections.push(section(
@@ -37,7 +29,7 @@ pub fn of_plan(plan: &PlanResult) -> Part {
         "words",
         "In words",
         "The answer as the command prints it, with all its tables.",
-        blocks::items(&blocks),
+        prose(plan).into_iter().map(Item::Words).collect(),
     ));
     Part {
         name: match plan.records.len() {
@@ -49,50 +41,9 @@ pub fn of_plan(plan: &PlanResult) -> Part {
             counted(plan.record.rows, "row"),
             plan.record.duration_s / 86_400.0
         ),
-        summary: summary(plan, &blocks),
+        first: gyrocal_design::first_screen(plan),
         sections,
         origin: origin(&plan.manifest),
-    }
-}
-
-fn summary(plan: &PlanResult, blocks: &[Words]) -> Summary {
-    let paragraphs: Vec<&String> = blocks
-        .iter()
-        .filter_map(|block| match block {
-            Words::Paragraph(words) => Some(words),
-            _ => None,
-        })
-        .collect();
-    let mut cards = Vec::new();
-    let lists = blocks.iter().filter_map(|block| match block {
-        Words::List(list) => Some((&list.title, &list.entries)),
-        _ => None,
-    });
-    for (title, entries) in lists.take(2) {
-        cards.push(Card {
-            title: "Recommended".to_owned(),
-            main: title.clone(),
-            text: entries.iter().take(SHOWN).cloned().collect(),
-            columns: 12,
-            ..Card::default()
-        });
-    }
-    cards.push(Card {
-        title: "Standard deviations".to_owned(),
-        table: Some(sigmas(plan)),
-        columns: 12,
-        ..Card::default()
-    });
-    Summary {
-        tone: Tone::Plain,
-        headline: plan.proposals.first().map_or_else(
-            || "No next run within the limits".to_owned(),
-            |best| format!("Next run: {}, {}", attitude(plan, best), hours(best)),
-        ),
-        sentence: paragraphs
-            .get(1)
-            .map_or_else(String::new, |words| (*words).clone()),
-        cards,
     }
 }
 
@@ -113,14 +64,8 @@ fn hours(proposal: &Proposal) -> String {
 
 /// Sigmas of the coefficients now, of going on, and of the best run.
 fn sigmas(plan: &PlanResult) -> Table {
-    let number = |head: &str| Column {
-        head: head.to_owned(),
-        is_number: true,
-    };
-    let word = |head: &str| Column {
-        head: head.to_owned(),
-        is_number: false,
-    };
+    let number = Column::numbers;
+    let word = Column::words;
     let going_on = plan.going_on.first().map(|run| &run.outlook.coefficients);
     let best = plan.proposals.first().map(|run| &run.outlook.coefficients);
     let cell = |all: Option<&Vec<Forecast>>, place: usize| {

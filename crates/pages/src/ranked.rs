@@ -2,7 +2,7 @@
 //! then others.
 
 use gyrocal_answer::Answer;
-use gyrocal_report::page::{Bar, BarGroup, Bars, Tint};
+use gyrocal_document::{Bar, BarGroup, Bars, Tint};
 use gyrocal_statistics::format;
 
 use crate::words::listed;

@@ -3,7 +3,7 @@
 use gyrocal_diagnosis::{
     CoefficientUncertainty, NOT_STATED, RecordUncertainty, RunSpread, by_source,
 };
-use gyrocal_report::page::{Cell, Column, Item, Section, Table};
+use gyrocal_document::{Cell, Column, Item, Section, Table};
 use gyrocal_statistics::format;
 
 use crate::diagnosis::section;
@@ -57,9 +57,9 @@ pub fn of_budget(budget: &RecordUncertainty) -> Section {
         "Uncertainty",
         &lead,
         vec![
-            Item::Table(results),
-            Item::Table(contributions),
-            Item::Table(conditions(budget)),
+            Item::from(results),
+            Item::from(contributions),
+            Item::from(conditions(budget)),
         ],
     )
 }
@@ -101,7 +101,7 @@ pub fn of_spread(spread: &RunSpread) -> Section {
         "Each record is a run of the same platform. The scatter is larger where noise, attitude and declared \
          turn-on scatter do not explain it, by a chi-square test with a false alarm of 1 % for all \
          coefficients together.",
-        vec![Item::Table(table)],
+        vec![Item::from(table)],
     )
 }
 

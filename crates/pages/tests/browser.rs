@@ -7,6 +7,7 @@ use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
 use gyrocal_pages::{Part, of_diagnosis, of_plant, of_result, page};
 use gyrocal_plant::{ColumnMap, LoadedPlant, SearchOptions};
 use gyrocal_record::{Bench, Manifest, Record};
+use gyrocal_report::to_html;
 use gyrocal_testkit::browser::{A4_PX, Browser};
 use gyrocal_testkit::workspace;
 use serde_json::json;
@@ -25,7 +26,7 @@ fn part(name: &str, change: impl FnOnce(&mut Record)) -> Part {
 
 fn written(folder: &TempDir, name: &str, parts: Vec<Part>) -> PathBuf {
     let path = folder.path().join(name);
-    std::fs::write(&path, page(parts).to_html().unwrap()).unwrap();
+    std::fs::write(&path, to_html(&page(parts)).unwrap()).unwrap();
     path
 }
 
@@ -242,7 +243,7 @@ fn texts_of_files_cannot_become_markup() {
             .result
     };
     diagnosis.manifest.command = "</script><script>alert(1)</script> & \u{202E}\u{7}".to_owned();
-    let html = page(vec![of_result(&diagnosis)]).to_html().unwrap();
+    let html = to_html(&page(vec![of_result(&diagnosis)])).unwrap();
     assert!(!html.contains("<script>alert"));
     assert!(
         html.contains("&lt;script&gt;alert(1)") && html.contains("\\u{202e}\\u{7}"),

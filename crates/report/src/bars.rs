@@ -7,11 +7,11 @@ use crate::error::Error;
 use crate::figure::{Legend, figure};
 use crate::geometry::Rect;
 use crate::number::short;
-use crate::page::Bars;
 use crate::picture::Picture;
 use crate::span::Span;
 use crate::style::{BELOW, BLACK, BODY, GREY, HAIR, INK, SMALL, THIN, WHITE, colour};
 use crate::text;
+use gyrocal_document::Bars;
 
 /// Height of a bar with its gap and of the heading of a group, px.
 const PITCH: f64 = 19.0;
@@ -38,93 +38,91 @@ impl Picture for Bars {
             &[&self.omitted, source],
             &legend,
             height,
-            |canvas, body| self.draw(canvas, body),
+            |canvas, body| draw(self, canvas, body),
         ))
     }
 }
 
-impl Bars {
-    fn draw(&self, canvas: &mut Canvas, body: Rect) {
-        let bars = || self.groups.iter().flat_map(|group| &group.bars);
-        let widths = bars().map(|bar| text::width_px(&bar.label, SMALL, false));
-        let names_px = (widths.fold(0.0, f64::max) + 8.0).min(NAMES * body.width());
-        let frame = Rect {
-            left: body.left + names_px,
-            right: body.right - NOTES * body.width(),
-            bottom: body.bottom - BELOW,
-            ..body
-        };
-        let ends = bars().map(|bar| bar.value);
-        let threshold = self.threshold.as_ref().map(|(value, _)| *value);
-        let span = Span::of(ends.chain(threshold).chain([0.0]));
-        let span = span.unwrap_or(Span { lo: 0.0, hi: 1.0 }).open();
-        let axis = Axis::linear(span, &self.quantity, "", (frame.width() / 70.0) as usize);
-        let x_of = |value: f64| frame.left + axis.at(value) * frame.width();
-        for (value, label) in &axis.ticks {
-            let x = x_of(*value);
-            canvas.line(
-                &[(x, frame.top), (x, frame.bottom)],
-                LineStyle::solid(GREY, 0.5 * HAIR),
-            );
-            let style = TextStyle::new(SMALL, Align::Middle).colour(INK);
-            canvas.text(label, (x, frame.bottom + 12.0), style);
-        }
-        let title = (frame.centre().0, frame.bottom + 28.0);
-        canvas.text(
-            &axis.title,
-            title,
-            TextStyle::new(SMALL, Align::Middle).colour(INK),
+fn draw(bars: &Bars, canvas: &mut Canvas, body: Rect) {
+    let all = || bars.groups.iter().flat_map(|group| &group.bars);
+    let widths = all().map(|bar| text::width_px(&bar.label, SMALL, false));
+    let names_px = (widths.fold(0.0, f64::max) + 8.0).min(NAMES * body.width());
+    let frame = Rect {
+        left: body.left + names_px,
+        right: body.right - NOTES * body.width(),
+        bottom: body.bottom - BELOW,
+        ..body
+    };
+    let ends = all().map(|bar| bar.value);
+    let threshold = bars.threshold.as_ref().map(|(value, _)| *value);
+    let span = Span::of(ends.chain(threshold).chain([0.0]));
+    let span = span.unwrap_or(Span { lo: 0.0, hi: 1.0 }).open();
+    let axis = Axis::linear(span, &bars.quantity, "", (frame.width() / 70.0) as usize);
+    let x_of = |value: f64| frame.left + axis.at(value) * frame.width();
+    for (value, label) in &axis.ticks {
+        let x = x_of(*value);
+        canvas.line(
+            &[(x, frame.top), (x, frame.bottom)],
+            LineStyle::solid(GREY, 0.5 * HAIR),
         );
-        let mut y = frame.top;
-        let mut headings = Vec::new();
-        for group in &self.groups {
-            headings.push((&group.label, y + 0.5 * HEAD));
-            y += HEAD;
-            for bar in &group.bars {
-                let middle = y + 0.5 * PITCH;
-                let name = text::fit(&bar.label, SMALL, false, names_px - 8.0);
-                let at = (frame.left - 6.0, middle);
-                canvas.text(&name, at, TextStyle::new(SMALL, Align::End));
-                let end = x_of(if bar.value.is_nan() { 0.0 } else { bar.value });
-                let corners = (
-                    (x_of(0.0).min(end), y + 3.0),
-                    (x_of(0.0).max(end), y + PITCH - 3.0),
-                );
-                canvas.rect(corners.0, corners.1, colour(bar.tint), 1.0);
-                let number = match bar.value.is_nan() {
-                    true => "not determined".to_owned(),
-                    false => short(bar.value, 3),
-                };
-                let words = match bar.note.is_empty() {
-                    true => number,
-                    false => format!("{number}, {}", bar.note),
-                };
-                let words = text::fit(&words, SMALL, false, body.right - end - 8.0);
-                let style = TextStyle::new(SMALL, Align::Start).colour(INK);
-                canvas.text(&words, (end.max(frame.left) + 6.0, middle), style);
-                y += PITCH;
-            }
+        let style = TextStyle::new(SMALL, Align::Middle).colour(INK);
+        canvas.text(label, (x, frame.bottom + 12.0), style);
+    }
+    let title = (frame.centre().0, frame.bottom + 28.0);
+    canvas.text(
+        &axis.title,
+        title,
+        TextStyle::new(SMALL, Align::Middle).colour(INK),
+    );
+    let mut y = frame.top;
+    let mut headings = Vec::new();
+    for group in &bars.groups {
+        headings.push((&group.label, y + 0.5 * HEAD));
+        y += HEAD;
+        for bar in &group.bars {
+            let middle = y + 0.5 * PITCH;
+            let name = text::fit(&bar.label, SMALL, false, names_px - 8.0);
+            let at = (frame.left - 6.0, middle);
+            canvas.text(&name, at, TextStyle::new(SMALL, Align::End));
+            let end = x_of(if bar.value.is_nan() { 0.0 } else { bar.value });
+            let corners = (
+                (x_of(0.0).min(end), y + 3.0),
+                (x_of(0.0).max(end), y + PITCH - 3.0),
+            );
+            canvas.rect(corners.0, corners.1, colour(bar.tint), 1.0);
+            let number = match bar.value.is_nan() {
+                true => "not determined".to_owned(),
+                false => short(bar.value, 3),
+            };
+            let words = match bar.note.is_empty() {
+                true => number,
+                false => format!("{number}, {}", bar.note),
+            };
+            let words = text::fit(&words, SMALL, false, body.right - end - 8.0);
+            let style = TextStyle::new(SMALL, Align::Start).colour(INK);
+            canvas.text(&words, (end.max(frame.left) + 6.0, middle), style);
+            y += PITCH;
         }
-        if let Some(value) = threshold {
-            let x = x_of(value);
-            let style = LineStyle::dashed(BLACK, THIN);
-            canvas.line(&[(x, frame.top), (x, frame.bottom)], style);
-        }
-        for (words, y) in headings {
-            // A white ground keeps grid and threshold out of the letters.
-            let right = body.left + text::width_px(words, BODY, true) + 4.0;
-            let half = 0.5 * HEAD - 3.0;
-            canvas.rect((body.left, y - half), (right, y + half), WHITE, 1.0);
-            let style = TextStyle::new(BODY, Align::Start).bold();
-            canvas.text(words, (body.left, y), style);
-        }
+    }
+    if let Some(value) = threshold {
+        let x = x_of(value);
+        let style = LineStyle::dashed(BLACK, THIN);
+        canvas.line(&[(x, frame.top), (x, frame.bottom)], style);
+    }
+    for (words, y) in headings {
+        // A white ground keeps grid and threshold out of the letters.
+        let right = body.left + text::width_px(words, BODY, true) + 4.0;
+        let half = 0.5 * HEAD - 3.0;
+        canvas.rect((body.left, y - half), (right, y + half), WHITE, 1.0);
+        let style = TextStyle::new(BODY, Align::Start).bold();
+        canvas.text(words, (body.left, y), style);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::page::{Bar, BarGroup, Tint};
+    use gyrocal_document::{Bar, BarGroup, Tint};
 
     #[test]
     fn bars_have_names_numbers_and_their_threshold() {

@@ -8,11 +8,11 @@ use crate::error::Error;
 use crate::figure::{Legend, figure};
 use crate::geometry::Rect;
 use crate::layout::Layout;
-use crate::page::{EstimateRow, Estimates, ValueWithSigma};
 use crate::picture::Picture;
 use crate::span::Span;
 use crate::style::{BLACK, DATA, SMALL, colour};
 use crate::text;
+use gyrocal_document::{EstimateRow, Estimates, ValueWithSigma};
 
 /// Quantities side by side.
 const IN_A_ROW: usize = 3;
@@ -25,7 +25,7 @@ const NAMES_PX: f64 = 170.0;
 
 impl Picture for Estimates {
     fn to_svg_of(&self, source: &str) -> Result<String, Error> {
-        self.check()?;
+        checked(self)?;
         let names = self.models.iter();
         let widths = names.map(|(name, _)| text::width_px(name, SMALL, false));
         let names_px = widths.fold(20.0, f64::max).min(NAMES_PX);
@@ -40,103 +40,101 @@ impl Picture for Estimates {
         Ok(figure(
             &self.title,
             &[&remarks, source],
-            &self.legend(),
+            &legend(self),
             layout.height(),
             |canvas, mut body| {
                 body.left += names_px;
-                self.draw(canvas, layout, body, names_px);
+                draw(self, canvas, layout, body, names_px);
             },
         ))
     }
 }
 
-impl Estimates {
-    fn check(&self) -> Result<(), Error> {
-        check::non_empty("the list of models", &self.models)?;
-        check::non_empty("the list of quantities", &self.rows)?;
-        for row in &self.rows {
-            if row.values.len() != self.models.len() {
-                return Err(Error::UnequalLengths {
-                    what: format!("the list of estimates of {}", row.name),
-                    found: row.values.len(),
-                    against: "the models".to_owned(),
-                    expected: self.models.len(),
-                });
-            }
-            for one in &row.values {
-                let what = || format!("an estimate of {}", row.name);
-                check::not_infinite(what, &[one.value, one.sigma])?;
-            }
-        }
-        Ok(())
-    }
-
-    fn legend(&self) -> Vec<Legend> {
-        let models = self.models.iter();
-        let dots = models.map(|(name, tint)| Legend::dot(colour(*tint), name.as_str()));
-        let bar = LineStyle::solid(BLACK, DATA);
-        dots.chain([Legend::line(bar, "±2σ (95%)")]).collect()
-    }
-
-    fn draw(&self, canvas: &mut Canvas, layout: Layout, body: Rect, names_px: f64) {
-        let heights = Span {
-            lo: -0.8,
-            hi: self.models.len() as f64 - 0.2,
-        };
-        for (index, row) in self.rows.iter().enumerate() {
-            let frame = layout.frame(body, index);
-            let span = Span::of(row.values.iter().flat_map(ends));
-            let has_data = span.is_some();
-            let span = span.unwrap_or(Span { lo: 0.0, hi: 1.0 }).padded(0.08);
-            let ticks = (frame.width() / 50.0) as usize;
-            let axes = Axes {
-                frame,
-                x: Axis::linear(span, "", &row.unit, ticks),
-                y: Axis::bare(heights),
-            };
-            if layout.is_first_in_row(index) {
-                self.draw_names(canvas, &axes, names_px);
-            }
-            let labels = Labels {
-                name: &row.name,
-                note: &row.note,
-                abscissa: true,
-                ordinate_title: false,
-            };
-            axes.draw(canvas, labels, has_data, |axes, canvas| {
-                self.draw_row(canvas, axes, row);
+fn checked(estimates: &Estimates) -> Result<(), Error> {
+    check::non_empty("the list of models", &estimates.models)?;
+    check::non_empty("the list of quantities", &estimates.rows)?;
+    for row in &estimates.rows {
+        if row.values.len() != estimates.models.len() {
+            return Err(Error::UnequalLengths {
+                what: format!("the list of estimates of {}", row.name),
+                found: row.values.len(),
+                against: "the models".to_owned(),
+                expected: estimates.models.len(),
             });
         }
-    }
-
-    /// The names of the models left of a panel.
-    fn draw_names(&self, canvas: &mut Canvas, axes: &Axes, names_px: f64) {
-        for (place, (name, _)) in self.models.iter().enumerate() {
-            let (_, y) = axes.point(0.0, self.height_of(place));
-            let name = text::fit(name, SMALL, false, names_px);
-            let style = TextStyle::new(SMALL, Align::End);
-            canvas.text(&name, (axes.frame.left - 8.0, y), style);
+        for one in &row.values {
+            let what = || format!("an estimate of {}", row.name);
+            check::not_infinite(what, &[one.value, one.sigma])?;
         }
     }
+    Ok(())
+}
 
-    fn draw_row(&self, canvas: &mut Canvas, axes: &Axes, row: &EstimateRow) {
-        for (place, (one, (_, tint))) in row.values.iter().zip(&self.models).enumerate() {
-            let y = self.height_of(place);
-            let [lower, upper] = ends(one);
-            if lower < upper {
-                let bar = [axes.point(lower, y), axes.point(upper, y)];
-                canvas.line(&bar, LineStyle::solid(colour(*tint), DATA));
-            }
-            if !one.value.is_nan() {
-                canvas.disc(axes.point(one.value, y), 3.0, colour(*tint));
-            }
+fn legend(estimates: &Estimates) -> Vec<Legend> {
+    let models = estimates.models.iter();
+    let dots = models.map(|(name, tint)| Legend::dot(colour(*tint), name.as_str()));
+    let bar = LineStyle::solid(BLACK, DATA);
+    dots.chain([Legend::line(bar, "±2σ (95%)")]).collect()
+}
+
+fn draw(estimates: &Estimates, canvas: &mut Canvas, layout: Layout, body: Rect, names_px: f64) {
+    let heights = Span {
+        lo: -0.8,
+        hi: estimates.models.len() as f64 - 0.2,
+    };
+    for (index, row) in estimates.rows.iter().enumerate() {
+        let frame = layout.frame(body, index);
+        let span = Span::of(row.values.iter().flat_map(ends));
+        let has_data = span.is_some();
+        let span = span.unwrap_or(Span { lo: 0.0, hi: 1.0 }).padded(0.08);
+        let ticks = (frame.width() / 50.0) as usize;
+        let axes = Axes {
+            frame,
+            x: Axis::linear(span, "", &row.unit, ticks),
+            y: Axis::bare(heights),
+        };
+        if layout.is_first_in_row(index) {
+            draw_names(estimates, canvas, &axes, names_px);
+        }
+        let labels = Labels {
+            name: &row.name,
+            note: &row.note,
+            abscissa: true,
+            ordinate_title: false,
+        };
+        axes.draw(canvas, labels, has_data, |axes, canvas| {
+            draw_row(estimates, canvas, axes, row);
+        });
+    }
+}
+
+/// The names of the models left of a panel.
+fn draw_names(estimates: &Estimates, canvas: &mut Canvas, axes: &Axes, names_px: f64) {
+    for (place, (name, _)) in estimates.models.iter().enumerate() {
+        let (_, y) = axes.point(0.0, height_of(estimates, place));
+        let name = text::fit(name, SMALL, false, names_px);
+        let style = TextStyle::new(SMALL, Align::End);
+        canvas.text(&name, (axes.frame.left - 8.0, y), style);
+    }
+}
+
+fn draw_row(estimates: &Estimates, canvas: &mut Canvas, axes: &Axes, row: &EstimateRow) {
+    for (place, (one, (_, tint))) in row.values.iter().zip(&estimates.models).enumerate() {
+        let y = height_of(estimates, place);
+        let [lower, upper] = ends(one);
+        if lower < upper {
+            let bar = [axes.point(lower, y), axes.point(upper, y)];
+            canvas.line(&bar, LineStyle::solid(colour(*tint), DATA));
+        }
+        if !one.value.is_nan() {
+            canvas.disc(axes.point(one.value, y), 3.0, colour(*tint));
         }
     }
+}
 
-    /// Ordinate of a model, the first on top.
-    fn height_of(&self, place: usize) -> f64 {
-        self.models.len() as f64 - 1.0 - place as f64
-    }
+/// Ordinate of a model, the first on top.
+fn height_of(estimates: &Estimates, place: usize) -> f64 {
+    estimates.models.len() as f64 - 1.0 - place as f64
 }
 
 /// Both ends of an interval; without a sigma the value itself.
@@ -151,7 +149,7 @@ fn ends(one: &ValueWithSigma) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::page::Tint;
+    use gyrocal_document::Tint;
 
     #[test]
     fn estimates_are_compared() {

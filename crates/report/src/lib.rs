@@ -1,21 +1,21 @@
 //! Pictures and pages of a calibration and a diagnosis: plain numbers in, SVG, PNG or HTML out.
 //!
-//! [`page`] makes a whole answer one HTML file; the rest is about pictures.
+//! [`to_html`] makes a whole [`Page`](gyrocal_document::Page) one HTML file; the rest is about pictures.
 //!
 //! Charts, bars and estimates are plain data, documented with units. Each is a [`Picture`] and a piece of a
 //! page: what a picture shows is what the page shows. Titles, names of quantities and units come from the caller.
 //!
 //! | data | shows |
 //! |---|---|
-//! | [`page::Chart`] | panels of lines, points and bars over an abscissa, with bands, levels and marks |
-//! | [`page::Bars`] | horizontal bars in groups, with a threshold |
-//! | [`page::Estimates`] | estimates of several models side by side, with their intervals |
+//! | [`Chart`](gyrocal_document::Chart) | panels of lines, points and bars over an abscissa, with bands, levels and marks |
+//! | [`Bars`](gyrocal_document::Bars) | horizontal bars in groups, with a threshold |
+//! | [`Estimates`](gyrocal_document::Estimates) | estimates of several models side by side, with their intervals |
 //!
 //! # Example
 //!
 //! ```
 //! use gyrocal_report::Picture;
-//! use gyrocal_report::page::{Chart, Line, LineKind, Panel, Tint};
+//! use gyrocal_document::{Chart, Line, LineKind, Panel, Tint};
 //!
 //! let picture = Chart {
 //!     title: "Residuals are white".to_owned(),
@@ -72,7 +72,7 @@ mod figure;
 mod geometry;
 mod layout;
 mod number;
-pub mod page;
+mod page;
 mod panels;
 mod picture;
 #[cfg(feature = "png")]
@@ -85,6 +85,7 @@ mod svg;
 mod text;
 
 pub use error::Error;
+pub use page::to_html;
 pub use picture::{Picture, write_svg};
 #[cfg(feature = "png")]
 pub use png::{to_png, write_png};

@@ -7,12 +7,13 @@ use crate::error::Error;
 use crate::figure::{Legend, figure};
 use crate::geometry::Rect;
 use crate::layout::Layout;
-use crate::page::{Chart, Line, LineKind, Panel};
+use crate::page::chart::{check, halves, note};
 use crate::picture::Picture;
 use crate::polyline::longest_interval;
 use crate::span::Span;
 use crate::style::{BAND_OPACITY, BLACK, DATA, LEGEND_LINE, PURPLE, SMALL, THIN, colour};
 use crate::text;
+use gyrocal_document::{Chart, Line, LineKind, Panel};
 
 /// Least height of a panel, px.
 const LEAST_PX: f64 = 150.0;
@@ -26,107 +27,105 @@ const BAR_PX: f64 = 8.0;
 
 impl Picture for Chart {
     fn to_svg_of(&self, source: &str) -> Result<String, Error> {
-        self.check()?;
+        check(self)?;
         let panel_px = f64::from(self.height_px).clamp(LEAST_PX, 2.0 * LEAST_PX);
         let layout = Layout::new(self.columns, self.panels.len(), panel_px).with_own_abscissae();
         Ok(figure(
             &self.title,
             &[&self.caption, source],
-            &self.legend(),
+            &legend(self),
             layout.height(),
-            |canvas, body| self.draw(canvas, layout, body),
+            |canvas, body| draw(self, canvas, layout, body),
         ))
     }
 }
 
-impl Chart {
-    /// One entry for each name in any panel.
-    fn legend(&self) -> Vec<Legend> {
-        let bands = self.panels.iter().flat_map(|panel| &panel.bands);
-        let bands = bands.map(|band| {
-            let entry = Legend::area(colour(band.tint), BAND_OPACITY, band.label.as_str());
-            (&band.label, entry)
-        });
-        let lines = self.panels.iter().flat_map(|panel| &panel.lines);
-        let lines = lines.map(|line| (&line.label, line.legend()));
-        let levels = self.panels.iter().flat_map(|panel| &panel.levels);
-        let levels = levels.map(|level| {
-            let entry = Legend::line(LineStyle::dashed(BLACK, THIN), level.label.as_str());
-            (&level.label, entry)
-        });
-        let mut shown: Vec<&String> = Vec::new();
-        let mut legend = Vec::new();
-        for (label, entry) in bands.chain(lines).chain(levels) {
-            if !label.is_empty() && !shown.contains(&label) {
-                shown.push(label);
-                legend.push(entry);
-            }
+/// One entry for each name in any panel.
+fn legend(chart: &Chart) -> Vec<Legend> {
+    let bands = chart.panels.iter().flat_map(|panel| &panel.bands);
+    let bands = bands.map(|band| {
+        let entry = Legend::area(colour(band.tint), BAND_OPACITY, band.label.as_str());
+        (&band.label, entry)
+    });
+    let lines = chart.panels.iter().flat_map(|panel| &panel.lines);
+    let lines = lines.map(|line| (&line.label, legend_of(line)));
+    let levels = chart.panels.iter().flat_map(|panel| &panel.levels);
+    let levels = levels.map(|level| {
+        let entry = Legend::line(LineStyle::dashed(BLACK, THIN), level.label.as_str());
+        (&level.label, entry)
+    });
+    let mut shown: Vec<&String> = Vec::new();
+    let mut legend = Vec::new();
+    for (label, entry) in bands.chain(lines).chain(levels) {
+        if !label.is_empty() && !shown.contains(&label) {
+            shown.push(label);
+            legend.push(entry);
         }
-        legend
     }
+    legend
+}
 
-    fn draw(&self, canvas: &mut Canvas, layout: Layout, body: Rect) {
-        let halves = self.halves();
-        let ordinates = self.panels.iter().zip(&halves);
-        let ordinates: Vec<Option<Span>> = ordinates
-            .map(|(panel, half)| match half {
-                Some(half) => Some(Span::symmetric(*half)),
-                None => panel.ordinates(self.logarithmic),
-            })
-            .collect();
-        let of_all = ordinates
-            .iter()
-            .copied()
-            .flatten()
-            .reduce(|all, one| all.with(one));
-        let abscissas = self.panels.iter().map(|panel| {
-            let values = panel.abscissa.iter().copied();
-            Span::of(values.filter(|value| !self.logarithmic_abscissa || *value > 0.0))
+fn draw(chart: &Chart, canvas: &mut Canvas, layout: Layout, body: Rect) {
+    let cut = halves(chart);
+    let spans = chart.panels.iter().zip(&cut);
+    let ordinates: Vec<Option<Span>> = spans
+        .map(|(panel, half)| match half {
+            Some(half) => Some(Span::symmetric(*half)),
+            None => ordinates(panel, chart.logarithmic),
+        })
+        .collect();
+    let of_all = ordinates
+        .iter()
+        .copied()
+        .flatten()
+        .reduce(|all, one| all.with(one));
+    let abscissas = chart.panels.iter().map(|panel| {
+        let values = panel.abscissa.iter().copied();
+        Span::of(values.filter(|value| !chart.logarithmic_abscissa || *value > 0.0))
+    });
+    let abscissas: Vec<Option<Span>> = abscissas.collect();
+    let linked = abscissas
+        .iter()
+        .copied()
+        .flatten()
+        .reduce(|all, one| all.with(one))
+        .filter(|_| !chart.unlinked);
+    for (index, panel) in chart.panels.iter().enumerate() {
+        let frame = layout.frame(body, index);
+        let along = linked.or(abscissas[index]);
+        let up = if chart.same_scale {
+            of_all
+        } else {
+            ordinates[index]
+        };
+        let axes = Axes {
+            frame,
+            x: axis(
+                along,
+                chart.abscissa_of(panel),
+                chart.logarithmic_abscissa,
+                (frame.width() / TICK_PX) as usize,
+            ),
+            y: axis(
+                up.map(|span| match chart.logarithmic {
+                    true => span,
+                    false => span.padded(0.05),
+                }),
+                (&chart.quantity, chart.unit_of(panel)),
+                chart.logarithmic,
+                (frame.height() / ROW_PX) as usize,
+            ),
+        };
+        let labels = Labels {
+            name: &panel.name,
+            note: &note(chart, panel, cut[index]),
+            abscissa: layout.shows_abscissa(index),
+            ordinate_title: layout.is_first_in_row(index) || panel.unit.is_some(),
+        };
+        let has_data = along.is_some() && up.is_some() && has_data(panel);
+        axes.draw(canvas, labels, has_data, |axes, canvas| {
+            draw_panel(panel, canvas, axes);
         });
-        let abscissas: Vec<Option<Span>> = abscissas.collect();
-        let linked = abscissas
-            .iter()
-            .copied()
-            .flatten()
-            .reduce(|all, one| all.with(one))
-            .filter(|_| !self.unlinked);
-        for (index, panel) in self.panels.iter().enumerate() {
-            let frame = layout.frame(body, index);
-            let along = linked.or(abscissas[index]);
-            let up = if self.same_scale {
-                of_all
-            } else {
-                ordinates[index]
-            };
-            let axes = Axes {
-                frame,
-                x: axis(
-                    along,
-                    self.abscissa_of(panel),
-                    self.logarithmic_abscissa,
-                    (frame.width() / TICK_PX) as usize,
-                ),
-                y: axis(
-                    up.map(|span| match self.logarithmic {
-                        true => span,
-                        false => span.padded(0.05),
-                    }),
-                    (&self.quantity, self.unit_of(panel)),
-                    self.logarithmic,
-                    (frame.height() / ROW_PX) as usize,
-                ),
-            };
-            let labels = Labels {
-                name: &panel.name,
-                note: &self.note(panel, halves[index]),
-                abscissa: layout.shows_abscissa(index),
-                ordinate_title: layout.is_first_in_row(index) || panel.unit.is_some(),
-            };
-            let has_data = along.is_some() && up.is_some() && panel.has_data();
-            axes.draw(canvas, labels, has_data, |axes, canvas| {
-                panel.draw(canvas, axes);
-            });
-        }
     }
 }
 
@@ -153,107 +152,101 @@ fn foot(axes: &Axes) -> f64 {
     }
 }
 
-impl Line {
-    fn legend(&self) -> Legend {
-        let colour = colour(self.tint);
-        match self.kind {
-            LineKind::Solid => {
-                Legend::line(LineStyle::solid(colour, LEGEND_LINE), self.label.as_str())
-            }
-            LineKind::Dashed => Legend::line(LineStyle::dashed(colour, THIN), self.label.as_str()),
-            LineKind::Points => Legend::dot(colour, self.label.as_str()),
-            LineKind::Bars => Legend::area(colour, 1.0, self.label.as_str()),
+fn legend_of(line: &Line) -> Legend {
+    let colour = colour(line.tint);
+    match line.kind {
+        LineKind::Solid => Legend::line(LineStyle::solid(colour, LEGEND_LINE), line.label.as_str()),
+        LineKind::Dashed => Legend::line(LineStyle::dashed(colour, THIN), line.label.as_str()),
+        LineKind::Points => Legend::dot(colour, line.label.as_str()),
+        LineKind::Bars => Legend::area(colour, 1.0, line.label.as_str()),
+    }
+}
+
+/// The span of all that is drawn; `None` without a value that has a place.
+fn ordinates(panel: &Panel, logarithmic: bool) -> Option<Span> {
+    let from = panel.scale_from.unwrap_or(f64::NEG_INFINITY);
+    let settled = panel.abscissa.partition_point(|value| *value < from);
+    let columns = panel.columns();
+    let values = columns.flat_map(|column| column.iter().skip(settled).copied());
+    let levels = panel.levels.iter().map(|level| level.value);
+    let feet = panel.lines.iter().any(|line| line.kind == LineKind::Bars);
+    let feet = feet.then_some(0.0).into_iter();
+    let all = values.chain(levels).chain(feet);
+    Span::of(all.filter(|value| !logarithmic || *value > 0.0))
+}
+
+/// Whether any line has a value; a band alone is data where there are no lines.
+fn has_data(panel: &Panel) -> bool {
+    let mut values = panel.lines.iter().flat_map(|line| &line.values);
+    panel.lines.is_empty() || values.any(|value| value.is_finite())
+}
+
+fn draw_panel(panel: &Panel, canvas: &mut Canvas, axes: &Axes) {
+    for band in &panel.bands {
+        let edges = (&*band.lower, &*band.upper);
+        let colour = colour(band.tint);
+        axes.band(canvas, &panel.abscissa, edges, colour, longest(panel));
+    }
+    for level in &panel.levels {
+        axes.horizontal_line(canvas, level.value, LineStyle::dashed(BLACK, THIN));
+    }
+    for line in &panel.lines {
+        draw_line(panel, canvas, axes, line);
+    }
+    for (row, mark) in panel.marks.iter().enumerate() {
+        axes.vertical_line(canvas, mark.value, LineStyle::dashed(PURPLE, THIN));
+        let (x, _) = axes.point(mark.value, 0.0);
+        if (axes.frame.left..=axes.frame.right).contains(&x) {
+            // Each label in a row of its own: marks may be close.
+            let y = axes.frame.top + SMALL + 1.3 * SMALL * row as f64;
+            let room = axes.frame.right - text::width_px(&mark.label, SMALL, false);
+            let style = TextStyle::new(SMALL, Align::Start).colour(PURPLE);
+            canvas.text(&mark.label, ((x + 3.0).min(room), y), style);
         }
     }
 }
 
-impl Panel {
-    /// The span of all that is drawn; `None` without a value that has a place.
-    fn ordinates(&self, logarithmic: bool) -> Option<Span> {
-        let from = self.scale_from.unwrap_or(f64::NEG_INFINITY);
-        let settled = self.abscissa.partition_point(|value| *value < from);
-        let columns = self.columns();
-        let values = columns.flat_map(|column| column.iter().skip(settled).copied());
-        let levels = self.levels.iter().map(|level| level.value);
-        let feet = self.lines.iter().any(|line| line.kind == LineKind::Bars);
-        let feet = feet.then_some(0.0).into_iter();
-        let all = values.chain(levels).chain(feet);
-        Span::of(all.filter(|value| !logarithmic || *value > 0.0))
-    }
-
-    /// Whether any line has a value; a band alone is data where there are no lines.
-    fn has_data(&self) -> bool {
-        let mut values = self.lines.iter().flat_map(|line| &line.values);
-        self.lines.is_empty() || values.any(|value| value.is_finite())
-    }
-
-    fn draw(&self, canvas: &mut Canvas, axes: &Axes) {
-        for band in &self.bands {
-            let edges = (&*band.lower, &*band.upper);
-            let colour = colour(band.tint);
-            axes.band(canvas, &self.abscissa, edges, colour, self.longest());
-        }
-        for level in &self.levels {
-            axes.horizontal_line(canvas, level.value, LineStyle::dashed(BLACK, THIN));
-        }
-        for line in &self.lines {
-            self.draw_line(canvas, axes, line);
-        }
-        for (row, mark) in self.marks.iter().enumerate() {
-            axes.vertical_line(canvas, mark.value, LineStyle::dashed(PURPLE, THIN));
-            let (x, _) = axes.point(mark.value, 0.0);
-            if (axes.frame.left..=axes.frame.right).contains(&x) {
-                // Each label in a row of its own: marks may be close.
-                let y = axes.frame.top + SMALL + 1.3 * SMALL * row as f64;
-                let room = axes.frame.right - text::width_px(&mark.label, SMALL, false);
-                let style = TextStyle::new(SMALL, Align::Start).colour(PURPLE);
-                canvas.text(&mark.label, ((x + 3.0).min(room), y), style);
+fn draw_line(panel: &Panel, canvas: &mut Canvas, axes: &Axes, line: &Line) {
+    let colour = colour(line.tint);
+    let style = match line.kind {
+        LineKind::Dashed => LineStyle::dashed(colour, THIN),
+        _ => LineStyle::solid(colour, DATA),
+    };
+    let points = panel.abscissa.iter().zip(&line.values);
+    let points = points.map(|(x, y)| (axes.point(*x, *y), *x));
+    let inside = |(x, y): (f64, f64)| {
+        (axes.frame.left..=axes.frame.right).contains(&x)
+            && (axes.frame.top..=axes.frame.bottom).contains(&y)
+    };
+    match line.kind {
+        LineKind::Points => {
+            for (point, _) in points.filter(|(point, _)| inside(*point)) {
+                canvas.disc(point, 2.0, colour);
             }
         }
-    }
-
-    fn draw_line(&self, canvas: &mut Canvas, axes: &Axes, line: &Line) {
-        let colour = colour(line.tint);
-        let style = match line.kind {
-            LineKind::Dashed => LineStyle::dashed(colour, THIN),
-            _ => LineStyle::solid(colour, DATA),
-        };
-        let points = self.abscissa.iter().zip(&line.values);
-        let points = points.map(|(x, y)| (axes.point(*x, *y), *x));
-        let inside = |(x, y): (f64, f64)| {
-            (axes.frame.left..=axes.frame.right).contains(&x)
-                && (axes.frame.top..=axes.frame.bottom).contains(&y)
-        };
-        match line.kind {
-            LineKind::Points => {
-                for (point, _) in points.filter(|(point, _)| inside(*point)) {
-                    canvas.disc(point, 2.0, colour);
-                }
+        LineKind::Bars => {
+            let apart = axes.frame.width() / panel.abscissa.len().max(1) as f64;
+            let style = LineStyle::solid(colour, BAR_PX.min(0.7 * apart));
+            for ((x, y), _) in points.filter(|(point, _)| inside(*point)) {
+                canvas.line(&[(x, foot(axes)), (x, y)], style);
             }
-            LineKind::Bars => {
-                let apart = axes.frame.width() / self.abscissa.len().max(1) as f64;
-                let style = LineStyle::solid(colour, BAR_PX.min(0.7 * apart));
-                for ((x, y), _) in points.filter(|(point, _)| inside(*point)) {
-                    canvas.line(&[(x, foot(axes)), (x, y)], style);
-                }
-            }
-            _ => axes.line(canvas, &self.abscissa, &line.values, style, self.longest()),
         }
+        _ => axes.line(canvas, &panel.abscissa, &line.values, style, longest(panel)),
     }
+}
 
-    /// The longest interval of the abscissa that is no gap.
-    fn longest(&self) -> f64 {
-        match self.no_gaps {
-            true => f64::INFINITY,
-            false => longest_interval(&self.abscissa),
-        }
+/// The longest interval of the abscissa that is no gap.
+fn longest(panel: &Panel) -> f64 {
+    match panel.no_gaps {
+        true => f64::INFINITY,
+        false => longest_interval(&panel.abscissa),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::page::{Band, Level, Mark, Tint};
+    use gyrocal_document::{Band, Level, Mark, Tint};
 
     fn chart(logarithmic: bool) -> Chart {
         let line = |label: &str, kind, values: [f64; 3]| Line {

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::page::Tint;
+use gyrocal_document::Tint;
 
 /// Width of a picture, px.
 pub(crate) const WIDTH: f64 = 960.0;

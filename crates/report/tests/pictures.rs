@@ -4,7 +4,7 @@
 
 mod samples;
 
-use gyrocal_report::page::Chart;
+use gyrocal_document::Chart;
 use gyrocal_report::{Error, Picture, write_svg};
 use samples::{all, residuals};
 

@@ -5,6 +5,7 @@ use gyrocal_answer::{
     OutputError, OutputTest, Parameter, RecordResult, RecordSummary, Subject, UnmodelledTerm,
     Verdict,
 };
+use gyrocal_document::{Screen, Standing};
 use gyrocal_statistics::format::{estimate, p_value, significant};
 use gyrocal_statistics::math::{exp, ln};
 
@@ -22,6 +23,22 @@ const LEAST_NONE: f64 = 0.05;
 pub fn all(answer: &Answer) -> Vec<String> {
     let facts = facts(answer).into_iter().map(|(_, words)| words);
     core::iter::once(verdict(answer)).chain(facts).collect()
+}
+
+/// The first screen: the verdict, and what the answer says after it.
+#[must_use]
+pub fn first_screen(answer: &Answer) -> Screen {
+    let (standing, words) = match answer.verdict {
+        Verdict::Clean => (Standing::Good, "NOTHING FOUND"),
+        Verdict::NotSettled => (Standing::Bad, "NOT SETTLED"),
+        Verdict::Unexplained => (Standing::Bad, "UNEXPLAINED"),
+        _ => (Standing::Bad, "MODEL LACKS SOMETHING"),
+    };
+    let mut screen = Screen::new(standing, words, verdict(answer));
+    for (label, words) in facts(answer) {
+        screen.fact(label, words);
+    }
+    screen
 }
 
 /// What the answer says after the verdict: sentences with what they are about.

@@ -3,8 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use gyrocal_answer::{Answer, Coefficients, Verdict, write_text};
-use gyrocal_document::{Screen, Standing};
+use gyrocal_answer::{Answer, Coefficients, write_text};
 use gyrocal_pages::{Part, of_plant, pictures};
 use gyrocal_plant::{
     ColumnMap, DiagnosedRecords, LoadedPlant, NamedRecord, PlantError, SearchOptions,
@@ -94,7 +93,7 @@ pub(super) fn run(
     let manifest = manifest("", options.seed, &inputs)?;
     found.together.answer.manifest = manifest.clone();
     let answer = &found.together.answer;
-    let mut shown = Reply::of(screen(answer), details(answer));
+    let mut shown = Reply::of(gyrocal_words::plant::first_screen(answer), details(answer));
     let mut outputs = Outputs::new();
     if arguments.views.are_asked() {
         let parts = parts(&found, arguments, &manifest)?;
@@ -161,20 +160,6 @@ fn checked_inputs<'a>(
         )));
     }
     Ok(inputs)
-}
-
-fn screen(answer: &Answer) -> Screen {
-    let (standing, verdict) = match answer.verdict {
-        Verdict::Clean => (Standing::Good, "NOTHING FOUND"),
-        Verdict::NotSettled => (Standing::Bad, "NOT SETTLED"),
-        Verdict::Unexplained => (Standing::Bad, "UNEXPLAINED"),
-        _ => (Standing::Bad, "MODEL LACKS SOMETHING"),
-    };
-    let mut screen = Screen::new(standing, verdict, gyrocal_words::plant::verdict(answer));
-    for (label, words) in gyrocal_words::plant::facts(answer) {
-        screen.fact(label, words);
-    }
-    screen
 }
 
 fn details(answer: &Answer) -> String {

@@ -3,8 +3,8 @@
 use gyrocal::Effect;
 use gyrocal::effect::{EffectKind, EffectParameter, NoiseProperty, Role};
 use gyrocal_calibration::{FittedPlatform, NoiseModel, Options, Run};
+use gyrocal_document::{Band, Chart, Line, LineKind, Panel, TimeAxis, Tint};
 use gyrocal_record::{AXES, Record};
-use gyrocal_report::page::{Band, Chart, Line, LineKind, Panel, TimeAxis, Tint};
 use gyrocal_statistics::{NORMAL_97_5, format};
 use gyrocal_testkit::workspace;
 use gyrocal_truth::{Hidden, InitialAttitude, Scenario, Simulation, Temperature, simulate};

@@ -1,13 +1,13 @@
 //! Figures 2 to 4 and two more: estimates against time, innovations, and final estimates.
 
 use gyrocal_calibration::{Options, declared_attitude, filter_settings, run_factorised_filter};
-use gyrocal_evaluation::CalibrationTrial;
-use gyrocal_record::AXES;
-use gyrocal_report::Picture;
-use gyrocal_report::page::{
+use gyrocal_document::{
     Band, Chart, EstimateRow, Estimates, Level, Line, LineKind, Panel, TimeAxis, Tint,
     ValueWithSigma,
 };
+use gyrocal_evaluation::CalibrationTrial;
+use gyrocal_record::AXES;
+use gyrocal_report::Picture;
 use gyrocal_statistics::{NORMAL_97_5, format, rms_of_present};
 use gyrocal_truth::{Coefficients, Simulation, euler_rule, simulate};
 

@@ -1,19 +1,21 @@
 //! The drift coefficients: nominal and extended, against record length, and against the site.
 
 use gyrocal::generated::platform::DRIFT;
-use gyrocal_answer::{Answer, CoefficientEstimate};
+use gyrocal_answer::{Answer, CoefficientEstimate, CoefficientShift};
 use gyrocal_calibration::{Estimates as Fitted, FittedPlatform, SiteBias, SiteQuantity};
-use gyrocal_record::Record;
-use gyrocal_report::page::{
+use gyrocal_document::{
     Band, Cell, Chart, Column, EstimateRow, Estimates, Item, Panel, Section, Table, TimeAxis, Tint,
     ValueWithSigma,
 };
+use gyrocal_record::Record;
 
-use super::summary::change;
 use super::{accepted, section as titled};
 use crate::error::PageError;
 use crate::panels::line;
 use crate::words::listed;
+
+/// A change of a coefficient from which on it is marked, in claimed sigmas.
+const NOTABLE: f64 = 2.0;
 
 /// Points of a curve, evenly over the record.
 const POINTS: usize = 240;
@@ -185,7 +187,7 @@ pub(crate) fn site(fit: &FittedPlatform<'_>) -> Result<Section, PageError> {
         "Site",
         "Sensitivity to the site: bias of each coefficient by an error of it, in its unit and in standard deviations of the \
          estimate. Errors that the bench file declares count in those standard deviations already.",
-        vec![Item::Table(Table {
+        vec![Item::from(Table {
             title: "Biases by errors of the site".to_owned(),
             columns,
             rows: rows.collect(),
@@ -204,5 +206,16 @@ fn site_error(bias: &SiteBias) -> String {
     match bias.is_declared {
         true => format!("{size} (declared σ)"),
         false => size,
+    }
+}
+
+/// The change of a coefficient in claimed sigmas.
+pub(super) fn change(shifts: &[CoefficientShift], name: &str) -> Cell {
+    let shift = shifts.iter().find(|shift| shift.coefficient == name);
+    Cell {
+        text: shift.map_or_else(String::new, |shift| {
+            format!("{:+.1}", shift.in_sigmas).replace('-', "−")
+        }),
+        strong: shift.is_some_and(|shift| shift.in_sigmas.abs() >= NOTABLE),
     }
 }

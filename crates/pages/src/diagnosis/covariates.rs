@@ -1,8 +1,8 @@
 //! Means of what a model leaves, in bins of what it may depend on: specific force, temperature, time.
 
 use gyrocal_diagnosis::{Diagnosis, OpenLoopSimulation, magnitude_channel};
+use gyrocal_document::{Band, Chart, Item, Level, Line, LineKind, Panel, Section, Tint};
 use gyrocal_record::{AXES, Bench, Record};
-use gyrocal_report::page::{Band, Chart, Item, Level, Line, LineKind, Panel, Section, Tint};
 use gyrocal_statistics::{BinMean, BinnedMeans, binned_means};
 
 use super::section;

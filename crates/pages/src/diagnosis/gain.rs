@@ -2,7 +2,7 @@
 
 use gyrocal_answer::{Answer, Gain, Prediction};
 use gyrocal_diagnosis::LaterPrediction;
-use gyrocal_report::page::{
+use gyrocal_document::{
     Cell, Chart, Column, Item, Line, LineKind, Panel, Section, Table, TimeAxis, Tint,
 };
 
@@ -15,8 +15,8 @@ pub(super) fn section(result: &Answer, later: Option<&LaterPrediction>) -> Optio
     let gain = result.gain.as_ref()?;
     let mut items = vec![Item::Chart(blocks(gain))];
     items.extend(later.map(|later| Item::Chart(drift(later))));
-    items.push(Item::Table(figures(gain)));
-    items.push(Item::Table(shifts(gain)));
+    items.push(Item::from(figures(gain)));
+    items.push(Item::from(shifts(gain)));
     Some(titled(
         "gain",
         "Gain",
@@ -70,7 +70,7 @@ fn blocks(gain: &Gain) -> Chart {
             name: "cross-validation".to_owned(),
             abscissa: (1..=nats.len()).map(|block| block as f64).collect(),
             lines,
-            levels: vec![gyrocal_report::page::Level {
+            levels: vec![gyrocal_document::Level {
                 label: String::new(),
                 value: 0.0,
             }],
@@ -125,13 +125,6 @@ fn drift(later: &LaterPrediction) -> Chart {
     }
 }
 
-fn column(head: &str, is_number: bool) -> Column {
-    Column {
-        head: head.to_owned(),
-        is_number,
-    }
-}
-
 fn figures(gain: &Gain) -> Table {
     let mut rows = Vec::new();
     rows.extend(gain.free_run_rms_g.map(|rms| {
@@ -164,10 +157,10 @@ fn figures(gain: &Gain) -> Table {
     Table {
         title: "Nominal and extended model".to_owned(),
         columns: vec![
-            column("figure", false),
-            column("nominal", true),
-            column("extended", true),
-            column("expected", true),
+            Column::words("figure"),
+            Column::numbers("nominal"),
+            Column::numbers("extended"),
+            Column::numbers("expected"),
         ],
         rows: rows
             .into_iter()
@@ -182,16 +175,16 @@ fn shifts(gain: &Gain) -> Table {
             Cell::from(shift.coefficient.clone()),
             Cell::from(format!("{:+.2e}", shift.shift).replace('-', "−")),
             Cell::from(shift.unit.clone()),
-            super::summary::change(core::slice::from_ref(shift), &shift.coefficient),
+            super::coefficients::change(core::slice::from_ref(shift), &shift.coefficient),
         ]
     });
     Table {
         title: "Changes of the coefficients".to_owned(),
         columns: vec![
-            column("coefficient", false),
-            column("change", true),
-            column("unit", false),
-            column("in σ of the nominal fit", true),
+            Column::words("coefficient"),
+            Column::numbers("change"),
+            Column::words("unit"),
+            Column::numbers("in σ of the nominal fit"),
         ],
         rows: rows.collect(),
     }

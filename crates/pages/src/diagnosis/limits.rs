@@ -1,17 +1,16 @@
 //! What a diagnosis cannot tell, and the next run.
 
 use gyrocal_answer::{Answer, Verdict};
-use gyrocal_report::page::{Card, Cell, Column, Item, List, Section, Table};
+use gyrocal_document::{Cell, Column, Item, List, Section, Table};
 use gyrocal_statistics::format;
 
 use super::section;
-use super::summary::first_of;
 use crate::words::listed;
 
 pub(super) fn cannot_tell(result: &Answer) -> Section {
     let groups = gyrocal_words::groups(result).into_iter();
     let groups = groups.map(|[members, why, words]| {
-        Item::List(List {
+        Item::from(List {
             title: members,
             entries: vec![format!("Why: {why}."), format!("Experiment: {words}.")],
         })
@@ -24,9 +23,9 @@ pub(super) fn cannot_tell(result: &Answer) -> Section {
                 "Names are not settled: alternatives were not compared to the end, or not beside a white rest."
             }
         };
-        items.push(Item::Text(words.to_owned()));
+        items.push(Item::text(words.to_owned()));
     }
-    items.extend(undetected(result).map(Item::Table));
+    items.extend(undetected(result).map(Item::from));
     section(
         "limits",
         "What cannot be told apart",
@@ -38,10 +37,7 @@ pub(super) fn cannot_tell(result: &Answer) -> Section {
 
 /// Effects that were not tested or would not be detected.
 fn undetected(result: &Answer) -> Option<Table> {
-    let word = |head: &str| Column {
-        head: head.to_owned(),
-        is_number: false,
-    };
+    let word = Column::words;
     let rows = result.not_searched.iter().map(|effect| {
         let mut power = result.power.iter();
         let power = power.find(|power| power.effect == effect.effect);
@@ -104,36 +100,26 @@ fn advice(result: &Answer) -> String {
     }
 }
 
-pub(super) fn next_card(result: &Answer) -> Card {
-    Card {
-        title: "Next step".to_owned(),
-        text: vec![first_of(&advice(result))],
-        command: plan_command(result),
-        columns: if result.coefficients.is_some() { 4 } else { 12 },
-        ..Card::default()
-    }
-}
-
 pub(super) fn next_run(result: &Answer) -> Section {
     let mut items = vec![
-        Item::Text(advice(result)),
-        Item::Command(plan_command(result)),
+        Item::text(advice(result)),
+        Item::command(plan_command(result)),
     ];
     let effects: Vec<&str> = result.causes().map(|cause| &*cause.effect).collect();
     // Of several records the command has no such model.
     if !effects.is_empty() && result.records.is_empty() {
-        items.push(Item::Text(format!(
+        items.push(Item::text(format!(
             "Coefficients with {} in the model:",
             listed(&effects)
         )));
-        items.push(Item::Command(format!(
+        items.push(Item::command(format!(
             "gyrocal calibrate {} --with {}",
             gyrocal_words::files(result),
             effects.join(",")
         )));
     }
     if !result.search_complete {
-        items.push(Item::Text(
+        items.push(Item::text(
             "The search ended at its budget of work: there may be more in the record than the effects found, \
              and effects that they were not compared with."
                 .to_owned(),

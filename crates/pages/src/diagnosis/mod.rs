@@ -7,14 +7,12 @@ mod limits;
 pub(crate) mod open_loop;
 pub(crate) mod ranking;
 mod residuals;
-mod summary;
 
-use gyrocal_answer::{Answer, FindingKind, Verdict};
+use gyrocal_answer::{Answer, Verdict};
 use gyrocal_diagnosis::Diagnosis;
+use gyrocal_document::{Item, Part, Section};
 use gyrocal_record::Bench;
-use gyrocal_report::page::{Item, Part, Section};
 
-use crate::blocks;
 use crate::error::PageError;
 use crate::origin::{file_name, origin};
 use crate::ranked::Ranked;
@@ -75,7 +73,7 @@ fn part(result: &Answer, sections: Vec<Section>) -> Part {
             gyrocal_words::counted(result.record.rows, "row"),
             result.record.duration_s / 86_400.0
         ),
-        summary: summary::summary(result),
+        first: gyrocal_words::first_screen(result),
         sections,
         origin: origin(&result.manifest),
     }
@@ -87,7 +85,10 @@ fn in_words(result: &Answer) -> Section {
         id: "words".to_owned(),
         title: "In words".to_owned(),
         lead: "The answer as the command prints it, with all its tables.".to_owned(),
-        items: blocks::items(&gyrocal_words::diagnosis(result)),
+        items: gyrocal_words::diagnosis(result)
+            .into_iter()
+            .map(Item::Words)
+            .collect(),
     }
 }
 
@@ -96,14 +97,6 @@ fn accepted(result: &Answer) -> Vec<&str> {
     let causes = result.causes();
     let accepted = causes.filter(|cause| cause.accepted == Some(true));
     accepted.map(|cause| &*cause.effect).collect()
-}
-
-/// All effects found, those of a filter aside: the page is about the record.
-fn found(result: &Answer) -> Vec<&gyrocal_answer::Finding> {
-    let findings = result.findings.iter();
-    findings
-        .filter(|finding| finding.kind != FindingKind::Filter)
-        .collect()
 }
 
 /// A section.

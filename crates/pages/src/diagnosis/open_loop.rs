@@ -2,8 +2,8 @@
 
 use gyrocal_calibration::FittedPlatform;
 use gyrocal_diagnosis::OpenLoopSimulation;
+use gyrocal_document::{Chart, Item, Panel, Section, TimeAxis};
 use gyrocal_record::{AXES, Bench, Record};
-use gyrocal_report::page::{Chart, Item, Panel, Section, TimeAxis};
 use gyrocal_statistics::{NORMAL_97_5, rms_of_present};
 
 use super::{covariates, section};

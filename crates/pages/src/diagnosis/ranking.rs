@@ -1,6 +1,6 @@
 //! Effects by test statistic.
 
-use gyrocal_report::page::{Item, Section};
+use gyrocal_document::{Item, Section};
 
 use super::section as titled;
 use crate::ranked::Ranked;

@@ -2,8 +2,8 @@
 
 use gyrocal_answer::{Answer, ResidualTest, Residuals};
 use gyrocal_diagnosis::{ChannelCorrelation, ChannelSpectrum, Diagnosis, ModelVersion};
+use gyrocal_document::{Cell, Chart, Column, Item, Level, Mark, Panel, Section, Table, Tint};
 use gyrocal_record::AXES;
-use gyrocal_report::page::{Cell, Chart, Column, Item, Level, Mark, Panel, Section, Table, Tint};
 use gyrocal_statistics::format::{self, p_cell};
 
 use super::section as titled;
@@ -18,7 +18,7 @@ const SECONDS_PER_DAY: f64 = 86_400.0;
 const LJUNG_BOX: &str = "correlation over rows (Ljung-Box)";
 
 pub(super) fn section(result: &Answer, charts: Vec<Chart>) -> Section {
-    let mut items = vec![Item::Table(tests(result))];
+    let mut items = vec![Item::from(tests(result))];
     items.extend(charts.into_iter().map(Item::Chart));
     titled(
         "residuals",
@@ -202,10 +202,6 @@ fn tests(result: &Answer) -> Table {
         let name = "magnitude of specific force (accelerometers alone)".to_owned();
         ("none", name, String::new(), norm.p_value)
     }));
-    let column = |head: &str, is_number| Column {
-        head: head.to_owned(),
-        is_number,
-    };
     let rows = all.into_iter().map(|(model, name, found, p)| {
         let cells = [model.to_owned(), name, found, p_cell(p)];
         cells.map(Cell::from).to_vec()
@@ -213,10 +209,10 @@ fn tests(result: &Answer) -> Table {
     Table {
         title: "Tests, and probability of as much by chance".to_owned(),
         columns: vec![
-            column("model", false),
-            column("test", false),
-            column("found", false),
-            column("p", true),
+            Column::words("model"),
+            Column::words("test"),
+            Column::words("found"),
+            Column::numbers("p"),
         ],
         rows: rows.collect(),
     }

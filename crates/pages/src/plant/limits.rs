@@ -1,7 +1,7 @@
 //! What a record of a plant cannot tell.
 
 use gyrocal_answer::Answer;
-use gyrocal_report::page::{Cell, Column, Item, List, Section, Table};
+use gyrocal_document::{Cell, Column, Item, List, Section, Table};
 
 use crate::diagnosis::section;
 
@@ -9,7 +9,7 @@ pub(super) fn cannot_tell(answer: &Answer) -> Section {
     let mut items = Vec::new();
     let list = |title: &str, entries: Vec<String>| {
         (!entries.is_empty()).then(|| {
-            Item::List(List {
+            Item::from(List {
                 title: title.to_owned(),
                 entries,
             })
@@ -38,7 +38,7 @@ pub(super) fn cannot_tell(answer: &Answer) -> Section {
             is_number: false,
         };
         let rows = answer.not_searched.iter();
-        items.push(Item::Table(Table {
+        items.push(Item::from(Table {
             title: "Effects that were not tested".to_owned(),
             columns: vec![column("effect"), column("reason")],
             rows: rows
@@ -57,7 +57,7 @@ pub(super) fn cannot_tell(answer: &Answer) -> Section {
                  compared to the end, or not beside a white rest."
             }
         };
-        items.push(Item::Text(all.to_owned()));
+        items.push(Item::text(all.to_owned()));
     }
     section(
         "cannot-tell",

@@ -2,13 +2,12 @@
 
 mod limits;
 mod over_time;
-mod summary;
 mod tables;
 
 use gyrocal_answer::Answer;
+use gyrocal_document::{Item, List, Part, Section};
 use gyrocal_plant::Diagnosed;
 use gyrocal_record::Manifest;
-use gyrocal_report::page::{Item, List, Part, Section};
 use gyrocal_statistics::format;
 use gyrocal_words::counted;
 
@@ -54,7 +53,7 @@ fn part(answer: &Answer, name: &str, manifest: &Manifest, mut sections: Vec<Sect
         "words",
         "In words",
         "The answer as the command prints it.",
-        vec![Item::List(List {
+        vec![Item::from(List {
             title: String::new(),
             entries: gyrocal_words::plant::all(answer),
         })],
@@ -62,7 +61,7 @@ fn part(answer: &Answer, name: &str, manifest: &Manifest, mut sections: Vec<Sect
     Part {
         name: name.to_owned(),
         size: size(answer),
-        summary: summary::summary(answer),
+        first: gyrocal_words::plant::first_screen(answer),
         sections,
         origin: origin(manifest),
     }

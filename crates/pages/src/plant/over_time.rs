@@ -1,8 +1,8 @@
 //! Outputs over time, and tests of the innovations.
 
 use gyrocal_answer::{Answer, OutputError};
+use gyrocal_document::{Cell, Chart, Column, Item, Panel, Section, Table, TimeAxis};
 use gyrocal_plant::{Diagnosed, OutputCorrelation, OutputSeries, RecordSeries};
-use gyrocal_report::page::{Cell, Chart, Column, Item, Panel, Section, Table, TimeAxis};
 use gyrocal_statistics::format::{self, p_cell};
 use gyrocal_statistics::{NORMAL_97_5, rms_of_present};
 
@@ -161,7 +161,7 @@ pub(super) fn innovations(diagnosed: &Diagnosed) -> Result<Section, PageError> {
         .into_iter()
         .filter(|one| !one.nominal.is_empty())
         .collect();
-    let mut items = vec![Item::Table(tests(&diagnosed.answer))];
+    let mut items = vec![Item::from(tests(&diagnosed.answer))];
     if !found.is_empty() {
         items.push(Item::Chart(correlations(&found)));
     }
@@ -216,10 +216,6 @@ fn correlations(found: &[OutputCorrelation]) -> Chart {
 
 /// Whiteness of what is left, and noise.
 fn tests(answer: &Answer) -> Table {
-    let column = |head: &str, is_number| Column {
-        head: head.to_owned(),
-        is_number,
-    };
     let rows = answer.noise.iter().map(|noise| {
         let [low, high] = noise.interval.map(|end| format::short(end, 3));
         let mut left = answer.remainder.outputs.iter();
@@ -237,10 +233,10 @@ fn tests(answer: &Answer) -> Table {
             "Noise, and correlation over rows that the model with all findings leaves (Ljung-Box)"
                 .to_owned(),
         columns: vec![
-            column("noise of", false),
-            column("over the declared one", true),
-            column("95 % interval", true),
-            column("p of white innovations", true),
+            Column::words("noise of"),
+            Column::numbers("over the declared one"),
+            Column::numbers("95 % interval"),
+            Column::numbers("p of white innovations"),
         ],
         rows: rows.collect(),
     }

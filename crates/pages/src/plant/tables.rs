@@ -1,10 +1,10 @@
 //! Sets, parameters, records and gain of a plant in tables.
 
 use gyrocal_answer::{AlternativeKind, Answer, Coefficients, Finding, OutputError};
-use gyrocal_plant::Diagnosed;
-use gyrocal_report::page::{
+use gyrocal_document::{
     Cell, Column, EstimateRow, Estimates, Item, Section, Table, Tint, ValueWithSigma,
 };
+use gyrocal_plant::Diagnosed;
 use gyrocal_statistics::format;
 
 use super::{over_time, rms};
@@ -33,10 +33,10 @@ pub(super) fn sets(answer: &Answer) -> Option<Section> {
     let mut items: Vec<Item> = answer
         .findings
         .iter()
-        .map(|one| Item::Table(set(answer, one)))
+        .map(|one| Item::from(set(answer, one)))
         .collect();
     let unmodelled = answer.remainder.unmodelled.iter();
-    items.extend(unmodelled.map(|one| Item::Text(gyrocal_words::plant::unmodelled(one))));
+    items.extend(unmodelled.map(|one| Item::text(gyrocal_words::plant::unmodelled(one))));
     Some(section(
         "sets",
         "Sets",
@@ -141,7 +141,7 @@ pub(super) fn records(answer: &Answer) -> Option<Section> {
         ];
         cells.map(Cell::from).to_vec()
     });
-    let mut items = vec![Item::Table(Table {
+    let mut items = vec![Item::from(Table {
         title: "Each record alone".to_owned(),
         columns: vec![
             word("record"),
@@ -152,7 +152,7 @@ pub(super) fn records(answer: &Answer) -> Option<Section> {
         rows: rows.collect(),
     })];
     for one in &answer.records {
-        items.push(Item::Table(error_table(
+        items.push(Item::from(error_table(
             format!(
                 "{}: open-loop error with the models of all records",
                 one.name
@@ -202,7 +202,7 @@ pub(super) fn gain(answer: &Answer, diagnosed: Option<&Diagnosed>) -> Option<Sec
     let open_loop = |of: &str, horizon_s: Option<f64>, errors: &[OutputError]| {
         let over = format::short(horizon_s.unwrap_or_default(), 4);
         let title = format!("Open-loop error in {of}, simulated over {over} s");
-        Item::Table(error_table(title, errors, true))
+        Item::from(error_table(title, errors, true))
     };
     let mut items = vec![open_loop(
         "the diagnosed data",
@@ -213,7 +213,7 @@ pub(super) fn gain(answer: &Answer, diagnosed: Option<&Diagnosed>) -> Option<Sec
     let later = gain.and_then(|gain| gain.validation.as_ref());
     match later {
         Some(later) => {
-            items.extend(gyrocal_words::plant::later_record(answer).map(Item::Text));
+            items.extend(gyrocal_words::plant::later_record(answer).map(Item::text));
             let title = format!(
                 "{:+.1} nats of predictive log score in the later record",
                 later.log_score_nats
@@ -229,7 +229,7 @@ pub(super) fn gain(answer: &Answer, diagnosed: Option<&Diagnosed>) -> Option<Sec
                 &later.open_loop,
             ));
         }
-        None => items.push(Item::Text(
+        None => items.push(Item::text(
             "No later record was given: --validate LATER.csv measures the gain where nothing was fitted."
                 .to_owned(),
         )),

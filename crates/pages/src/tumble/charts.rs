@@ -1,8 +1,8 @@
 //! Charts of a multi-position test.
 
 use gyrocal::generated::catalogue::OUTPUTS;
+use gyrocal_document::{Band, Chart, Line, LineKind, Panel, Tint};
 use gyrocal_instruments::multi_position::{Finding, GyroReport, MultiPositionReport, PreparedTest};
-use gyrocal_report::page::{Band, Chart, Line, LineKind, Panel, Tint};
 use gyrocal_statistics::format;
 
 use crate::panels::line;

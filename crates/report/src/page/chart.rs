@@ -1,272 +1,73 @@
-//! Panels with lines, as data.
+//! What can be drawn of a chart, and on which scale.
 
-use serde::Serialize;
+use gyrocal_document::{Chart, Panel};
 
 use crate::check;
 use crate::error::Error;
 use crate::number::{count, readable_unit, short};
 use crate::scale;
 
-/// Panels with one abscissa, which zoom together.
-///
-/// Not-a-number is a missing value and leaves a gap, as does an interval of more than four times the
-/// median one. A panel of more than 6000 rows is decimated to the extremes of each of 1500 stretches;
-/// gaps shorter than an eighth of a stretch are then not shown.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Chart {
-    /// Main statement.
-    pub title: String,
-    /// What is shown, and how to read it.
-    pub caption: String,
-    /// Quantity of the abscissa.
-    pub abscissa: String,
-    /// Its unit.
-    pub abscissa_unit: String,
-    /// Whether the abscissa is logarithmic.
-    pub logarithmic_abscissa: bool,
-    /// Quantity of the ordinate; empty if each panel is of its own.
-    pub quantity: String,
-    /// Unit of all values; of the panel where a panel has one.
-    pub unit: String,
-    /// Whether the ordinate is logarithmic.
-    pub logarithmic: bool,
-    /// Whether all panels have one scale.
-    pub same_scale: bool,
-    /// Whether a few extremes of lines about zero that would flatten all else leave the scale; the note of a
-    /// panel then tells how many.
-    pub cut_extremes: bool,
-    /// Whether the panels have abscissas of different meaning and do not zoom together.
-    pub unlinked: bool,
-    /// Panels in a row.
-    pub columns: usize,
-    /// Height of a panel, px.
-    pub height_px: u32,
-    /// The panels.
-    pub panels: Vec<Panel>,
+/// Checks that columns have equal lengths and can be drawn.
+pub(crate) fn check(chart: &Chart) -> Result<(), Error> {
+    check::non_empty("the list of panels", &chart.panels)?;
+    for panel in &chart.panels {
+        let of = |what: &str, label: &str| format!("{what} {label} of panel {}", panel.name);
+        check::non_decreasing(&of("abscissas", ""), &panel.abscissa)?;
+        let rows = ("the abscissas", panel.abscissa.len());
+        for line in &panel.lines {
+            check::column(|| of("line", &line.label), &line.values, rows)?;
+        }
+        for band in &panel.bands {
+            check::column(|| of("lower edge", &band.label), &band.lower, rows)?;
+            check::column(|| of("upper edge", &band.label), &band.upper, rows)?;
+        }
+        for level in &panel.levels {
+            check::finite(&of("level", &level.label), level.value)?;
+        }
+        for mark in &panel.marks {
+            check::finite(&of("mark", &mark.label), mark.value)?;
+        }
+    }
+    Ok(())
 }
 
-/// One set of axes.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Panel {
-    /// Its name: `x`.
-    pub name: String,
-    /// Statistics beside the name; may be empty.
-    pub note: String,
-    /// Unit of its values, if it is not that of the chart.
-    pub unit: Option<String>,
-    /// Quantity and unit of its abscissas, if they are not those of the chart.
-    pub own_abscissa: Option<(String, String)>,
-    /// The abscissas; they never decrease.
-    pub abscissa: Vec<f64>,
-    /// Bands between two lines, drawn first.
-    pub bands: Vec<Band>,
-    /// Lines, drawn in their order.
-    pub lines: Vec<Line>,
-    /// Horizontal lines.
-    pub levels: Vec<Level>,
-    /// Vertical lines.
-    pub marks: Vec<Mark>,
-    /// Whether the abscissas are evenly spaced points of which none is missing, such as lags: a wide
-    /// interval is then no gap.
-    pub no_gaps: bool,
-    /// Abscissa from which on the values set the scale; earlier ones may leave the panel.
-    pub scale_from: Option<f64>,
-}
-
-/// A line.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Line {
-    /// Name in the legend.
-    pub label: String,
-    /// Its colour.
-    pub tint: Tint,
-    /// Its form.
-    pub kind: LineKind,
-    /// Its values.
-    pub values: Series,
-}
-
-/// Values, one for each abscissa.
-pub type Series = Vec<f64>;
-
-/// Form of a line.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum LineKind {
-    /// Drawn through.
-    Solid,
-    /// Dashed.
-    Dashed,
-    /// Points without a line.
-    Points,
-    /// Bars from zero.
-    Bars,
-}
-
-/// The band between two lines.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Band {
-    /// Name in the legend.
-    pub label: String,
-    /// Its colour.
-    pub tint: Tint,
-    /// Its lower edge.
-    pub lower: Series,
-    /// Its upper edge.
-    pub upper: Series,
-}
-
-/// A horizontal line.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Level {
-    /// Name in the legend.
-    pub label: String,
-    /// The ordinate.
-    pub value: f64,
-}
-
-/// A vertical line.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Mark {
-    /// Its name, written beside it.
-    pub label: String,
-    /// The abscissa.
-    pub value: f64,
-}
-
-/// Colour of a series by its meaning, the same in every chart.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Tint {
-    /// What was measured.
-    Measured,
-    /// The nominal model.
-    Nominal,
-    /// The extended model.
-    Extended,
-    /// What is expected: bounds, noise.
-    Expected,
-    /// Alternatives of a reported effect.
-    Alternative,
-    /// All else.
-    Other,
-}
-
-impl Tint {
-    pub(crate) fn name(self) -> &'static str {
-        match self {
-            Self::Measured => "measured",
-            Self::Nominal => "nominal",
-            Self::Extended => "extended",
-            Self::Expected => "expected",
-            Self::Alternative => "alternative",
-            Self::Other => "other",
+/// Half of the scale of each panel that leaves extremes out; `None` of one where all have a place.
+pub(crate) fn halves(chart: &Chart) -> Vec<Option<f64>> {
+    let of = |panels: &[Panel]| {
+        let lines = panels.iter().flat_map(|panel| &panel.lines);
+        let expected = panels.iter().map(Panel::largest_expected);
+        let least = 1.25 * expected.fold(0.0, f64::max);
+        scale::without_extremes(lines.map(|line| &*line.values), least)
+    };
+    match (chart.cut_extremes, chart.same_scale) {
+        (false, _) => vec![None; chart.panels.len()],
+        (true, true) => vec![of(&chart.panels); chart.panels.len()],
+        (true, false) => {
+            let panels = chart.panels.iter().map(core::slice::from_ref);
+            panels.map(of).collect()
         }
     }
 }
 
-impl Chart {
-    /// Checks that columns have equal lengths and can be drawn.
-    pub(crate) fn check(&self) -> Result<(), Error> {
-        check::non_empty("the list of panels", &self.panels)?;
-        for panel in &self.panels {
-            let of = |what: &str, label: &str| format!("{what} {label} of panel {}", panel.name);
-            check::non_decreasing(&of("abscissas", ""), &panel.abscissa)?;
-            let rows = ("the abscissas", panel.abscissa.len());
-            for line in &panel.lines {
-                check::column(|| of("line", &line.label), &line.values, rows)?;
-            }
-            for band in &panel.bands {
-                check::column(|| of("lower edge", &band.label), &band.lower, rows)?;
-                check::column(|| of("upper edge", &band.label), &band.upper, rows)?;
-            }
-            for level in &panel.levels {
-                check::finite(&of("level", &level.label), level.value)?;
-            }
-            for mark in &panel.marks {
-                check::finite(&of("mark", &mark.label), mark.value)?;
-            }
-        }
-        Ok(())
+/// The note of a panel, with what has no place on its scale.
+pub(crate) fn note(chart: &Chart, panel: &Panel, half: Option<f64>) -> String {
+    let half = half.unwrap_or(f64::INFINITY);
+    let values = panel.lines.iter().flat_map(|line| &line.values);
+    let beyond = values.map(|value| value.abs()).filter(|size| *size > half);
+    let (number, largest) = beyond.fold((0, 0.0_f64), |(number, largest), size| {
+        (number + 1, largest.max(size))
+    });
+    if number == 0 {
+        return panel.note.clone();
     }
-
-    /// Unit of the values of a panel.
-    pub(crate) fn unit_of<'a>(&'a self, panel: &'a Panel) -> &'a str {
-        panel.unit.as_deref().unwrap_or(&self.unit)
-    }
-
-    /// Quantity and unit of the abscissas of a panel.
-    pub(crate) fn abscissa_of<'a>(&'a self, panel: &'a Panel) -> (&'a str, &'a str) {
-        let own = panel.own_abscissa.as_ref();
-        let (quantity, unit) = own.map_or((&self.abscissa, &self.abscissa_unit), |(q, u)| (q, u));
-        (quantity, unit)
-    }
-
-    /// Half of the scale of each panel that leaves extremes out; `None` of one where all have a place.
-    pub(crate) fn halves(&self) -> Vec<Option<f64>> {
-        let of = |panels: &[Panel]| {
-            let lines = panels.iter().flat_map(|panel| &panel.lines);
-            let expected = panels.iter().map(Panel::largest_expected);
-            let least = 1.25 * expected.fold(0.0, f64::max);
-            scale::without_extremes(lines.map(|line| &*line.values), least)
-        };
-        match (self.cut_extremes, self.same_scale) {
-            (false, _) => vec![None; self.panels.len()],
-            (true, true) => vec![of(&self.panels); self.panels.len()],
-            (true, false) => {
-                let panels = self.panels.iter().map(core::slice::from_ref);
-                panels.map(of).collect()
-            }
-        }
-    }
-
-    /// The note of a panel, with what has no place on its scale.
-    pub(crate) fn note(&self, panel: &Panel, half: Option<f64>) -> String {
-        let half = half.unwrap_or(f64::INFINITY);
-        let values = panel.lines.iter().flat_map(|line| &line.values);
-        let beyond = values.map(|value| value.abs()).filter(|size| *size > half);
-        let (number, largest) = beyond.fold((0, 0.0_f64), |(number, largest), size| {
-            (number + 1, largest.max(size))
-        });
-        if number == 0 {
-            return panel.note.clone();
-        }
-        let (factor, unit) = readable_unit(self.unit_of(panel), largest);
-        let words = format!(
-            "{} beyond the scale, to {} {unit}",
-            count(number),
-            short(factor * largest, 2)
-        );
-        match &*panel.note {
-            "" => words,
-            note => format!("{note}; {words}"),
-        }
-    }
-}
-
-impl Panel {
-    /// All columns over the abscissa.
-    pub(crate) fn columns(&self) -> impl Iterator<Item = &[f64]> {
-        let bands = self
-            .bands
-            .iter()
-            .flat_map(|band| [&*band.lower, &*band.upper]);
-        bands.chain(self.lines.iter().map(|line| &*line.values))
-    }
-
-    /// The largest magnitude, nan aside.
-    pub(crate) fn largest(&self) -> f64 {
-        let lines = self.lines.iter().flat_map(|line| &line.values);
-        let largest = lines.map(|value| value.abs()).fold(0.0, f64::max);
-        largest.max(self.largest_expected())
-    }
-
-    /// The largest magnitude of bands and levels, nan aside.
-    fn largest_expected(&self) -> f64 {
-        let bands = self.bands.iter();
-        let edges = bands.flat_map(|band| band.lower.iter().chain(&band.upper));
-        let levels = self.levels.iter().map(|level| &level.value);
-        let all = edges.chain(levels);
-        all.map(|value| value.abs()).fold(0.0, f64::max)
+    let (factor, unit) = readable_unit(chart.unit_of(panel), largest);
+    let words = format!(
+        "{} beyond the scale, to {} {unit}",
+        count(number),
+        short(factor * largest, 2)
+    );
+    match &*panel.note {
+        "" => words,
+        note => format!("{note}; {words}"),
     }
 }

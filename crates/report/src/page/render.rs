@@ -4,13 +4,13 @@ use gyrocal_record::printable;
 use minijinja::{AutoEscape, Environment, context};
 use serde_json::{Value, json};
 
-use super::chart::{Chart, Panel};
+use super::chart;
 use super::columns::Columns;
 use super::decimate::{MOST_ROWS, Row, rows};
-use super::model::{Item, Page, Part, Section};
 use super::strips;
 use crate::error::Error;
 use crate::number::{count, readable_unit};
+use gyrocal_document::{Chart, Item, List, Page, Panel, Part, Section, Standing, Words};
 
 /// The templates, all HTML: minijinja escapes by the name.
 const TEMPLATES: [(&str, &str); 4] = [
@@ -32,41 +32,67 @@ const SCRIPTS: [&str; 4] = [
     include_str!("../../assets/page.js"),
 ];
 
-impl Page {
-    /// The page as one HTML file that needs nothing else.
-    ///
-    /// # Errors
-    /// [`Error::UnequalLengths`], [`Error::Value`] and [`Error::Empty`] of a chart that cannot be drawn;
-    /// [`Error::Template`].
-    pub fn to_html(&self) -> Result<String, Error> {
-        let mut environment = Environment::new();
-        environment.set_auto_escape_callback(|_| AutoEscape::Html);
-        for (name, text) in TEMPLATES {
-            environment.add_template(name, text).map_err(template)?;
-        }
-        let mut drawing = Drawing::default();
-        let parts: Vec<Value> = self
-            .parts
-            .iter()
-            .enumerate()
-            .map(|(place, part)| drawing.part(place, part))
-            .collect::<Result<_, _>>()?;
-        let data = json!({ "columns": drawing.columns.finish(), "charts": drawing.charts });
-        let page = environment.get_template("page.html").map_err(template)?;
-        page.render(context! {
-            title => printable(&self.title),
+/// The page as one HTML file that needs nothing else.
+///
+/// # Errors
+/// [`Error::UnequalLengths`], [`Error::Value`] and [`Error::Empty`] of a chart that cannot be drawn;
+/// [`Error::Template`].
+pub fn to_html(page: &Page) -> Result<String, Error> {
+    let mut environment = Environment::new();
+    environment.set_auto_escape_callback(|_| AutoEscape::Html);
+    for (name, text) in TEMPLATES {
+        environment.add_template(name, text).map_err(template)?;
+    }
+    let mut drawing = Drawing::default();
+    let parts: Vec<Value> = page
+        .parts
+        .iter()
+        .enumerate()
+        .map(|(place, part)| drawing.part(place, part))
+        .collect::<Result<_, _>>()?;
+    let data = json!({ "columns": drawing.columns.finish(), "charts": drawing.charts });
+    let whole = environment.get_template("page.html").map_err(template)?;
+    whole
+        .render(context! {
+            title => printable(&page.title),
             parts => parts,
             data => data,
             styles => STYLES.concat(),
             scripts => SCRIPTS,
         })
         .map_err(template)
-    }
 }
 
 fn template(reason: minijinja::Error) -> Error {
     Error::Template {
         reason: format!("{reason:#}"),
+    }
+}
+
+/// Letter that stands beside the colour of a verdict.
+fn sign(standing: Standing) -> &'static str {
+    match standing {
+        Standing::Good => "✓",
+        Standing::Doubtful => "!",
+        Standing::Bad => "✕",
+        Standing::Neutral => "i",
+    }
+}
+
+fn of_words(words: &Words) -> Value {
+    match words {
+        Words::Paragraph(text) => json!({ "kind": "text", "text": text }),
+        Words::Command(text) => json!({ "kind": "command", "text": text }),
+        Words::Entry(entry) => {
+            let title = format!("{}. {}", entry.number, entry.title);
+            let list = List {
+                title,
+                entries: entry.paragraphs.clone(),
+            };
+            json!({ "kind": "list", "list": list })
+        }
+        Words::List(list) => json!({ "kind": "list", "list": list }),
+        Words::Table(table) => json!({ "kind": "table", "table": table }),
     }
 }
 
@@ -88,8 +114,8 @@ impl Drawing {
             "id": format!("part-{}", place + 1),
             "name": part.name,
             "size": part.size,
-            "sign": part.summary.tone.sign(),
-            "summary": part.summary,
+            "sign": sign(part.first.standing),
+            "first": part.first,
             "sections": sections,
             "origin": part.origin,
         });
@@ -113,18 +139,16 @@ impl Drawing {
 
     fn item(&mut self, item: &Item) -> Result<Value, Error> {
         Ok(match item {
-            Item::Text(text) => json!({ "kind": "text", "text": text }),
-            Item::Command(text) => json!({ "kind": "command", "text": text }),
-            Item::List(list) => json!({ "kind": "list", "list": list }),
-            Item::Table(table) => json!({ "kind": "table", "table": table }),
+            Item::Words(words) => of_words(words),
             Item::Bars(bars) => json!({ "kind": "bars", "bars": strips::bars(bars) }),
             Item::Estimates(estimates) => {
                 json!({ "kind": "estimates", "estimates": strips::estimates(estimates) })
             }
             Item::Chart(chart) => {
-                chart.check()?;
+                chart::check(chart)?;
                 json!({ "kind": "chart", "chart": self.chart(chart) })
             }
+            _ => json!({ "kind": "none" }),
         })
     }
 
@@ -140,7 +164,7 @@ impl Drawing {
             true => (1.0, chart.unit_of(panel).to_owned()),
             false => readable_unit(chart.unit_of(panel), largest(panel)),
         };
-        let panels = || chart.panels.iter().zip(chart.halves());
+        let panels = || chart.panels.iter().zip(chart::halves(chart));
         let drawn_panels = panels().map(|(panel, half)| {
             let (factor, unit) = scaled(panel);
             let mut drawn = self.panel(panel, factor, &unit);
@@ -230,7 +254,7 @@ impl Drawing {
 
 /// Name, note and the text for those who do not see the picture.
 fn description(chart: &Chart, panel: &Panel, half: Option<f64>) -> Value {
-    let note = chart.note(panel, half);
+    let note = chart::note(chart, panel, half);
     let lines = panel.lines.iter().map(|line| &*line.label);
     let shown: Vec<&str> = lines.collect();
     json!({
@@ -289,9 +313,7 @@ fn make_printable(value: &mut Value) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::page::{
-        Bar, BarGroup, Bars, Card, Line, LineKind, List, Origin, Summary, Tint, Tone,
-    };
+    use gyrocal_document::{Bar, BarGroup, Bars, Line, LineKind, Origin, Screen, Tint};
 
     /// A text that a page must neither obey nor drop.
     const HOSTILE: &str = "</script><own-tag>\u{202e}\u{7}";
@@ -339,9 +361,9 @@ mod tests {
             omitted: own(),
         };
         let items = vec![
-            Item::Text(own()),
-            Item::Command(own()),
-            Item::List(List {
+            Item::text(own()),
+            Item::command(own()),
+            Item::from(List {
                 title: own(),
                 entries: vec![own()],
             }),
@@ -351,15 +373,11 @@ mod tests {
         let part = Part {
             name: own(),
             size: own(),
-            summary: Summary {
-                tone: Tone::Plain,
-                headline: own(),
-                sentence: own(),
-                cards: vec![Card {
-                    title: own(),
-                    command: own(),
-                    ..Card::default()
-                }],
+            first: {
+                let mut first = Screen::new(Standing::Neutral, HOSTILE, HOSTILE);
+                first.fact(HOSTILE, HOSTILE);
+                first.then(HOSTILE, HOSTILE);
+                first
             },
             sections: vec![Section {
                 id: "own".to_owned(),
@@ -376,7 +394,7 @@ mod tests {
             title: own(),
             parts: vec![part],
         };
-        let html = page.to_html().unwrap();
+        let html = to_html(&page).unwrap();
         assert!(html.contains("&lt;own-tag&gt;\\u{202e}\\u{7}"));
         for hostile in ["<own-tag>", "\u{202e}", "\u{7}"] {
             assert!(!html.contains(hostile), "{hostile:?}");

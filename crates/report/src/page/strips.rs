@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use super::model::{Bars, EstimateRow, Estimates};
 use crate::number::{short, with_uncertainty};
+use gyrocal_document::{Bars, EstimateRow, Estimates};
 
 /// Width of an interval, in standard deviations each way.
 const SIGMAS: f64 = 2.0;

@@ -6,11 +6,11 @@
     reason = "a module of binaries that use a part of it each"
 )]
 
-use gyrocal_report::Picture;
-use gyrocal_report::page::{
+use gyrocal_document::{
     Band, Bar, BarGroup, Bars, Chart, EstimateRow, Estimates, Level, Line, LineKind, Mark, Panel,
     Tint, ValueWithSigma,
 };
+use gyrocal_report::Picture;
 
 /// A name, the picture, and words that it must show.
 pub type Sample = (&'static str, Box<dyn Picture>, Vec<&'static str>);

@@ -1,0 +1,40 @@
+//! Estimates side by side.
+
+use crate::Tint;
+
+/// Estimates of several models side by side, as numbers and on a scale of each quantity.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Estimates {
+    /// Its title.
+    pub title: String,
+    /// The models with their colours.
+    pub models: Vec<(String, Tint)>,
+    /// The quantities.
+    pub rows: Vec<EstimateRow>,
+    /// Head of the column of remarks; may be empty.
+    pub note_head: String,
+}
+
+/// The estimates of a quantity.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EstimateRow {
+    /// Its name.
+    pub name: String,
+    /// Its unit.
+    pub unit: String,
+    /// An estimate of each model.
+    pub values: Vec<ValueWithSigma>,
+    /// A remark; may be empty.
+    pub note: String,
+    /// Whether the remark is to be noticed.
+    pub strong: bool,
+}
+
+/// An estimate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ValueWithSigma {
+    /// The value.
+    pub value: f64,
+    /// Its standard deviation.
+    pub sigma: f64,
+}
