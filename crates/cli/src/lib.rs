@@ -51,6 +51,7 @@ use std::ffi::OsString;
 use std::io::{ErrorKind, Write as _};
 use std::path::Path;
 
+use gyrocal_document::Words;
 use gyrocal_plant::{LoadedPlant, PlantError};
 use miette::Report;
 
@@ -62,6 +63,12 @@ pub use crate::plan::NotPlanned;
 use crate::plant::PlantCli;
 use crate::reply::Reply;
 use crate::terminal::Shown;
+
+/// An answer in words as text for a terminal.
+#[must_use]
+pub fn text_of(pieces: &[Words]) -> String {
+    layout::layout(pieces)
+}
 
 /// Runs the command with its arguments, the first of which is the name of the program: reads and
 /// writes files, stdout and stderr. Returns the exit code of the process.

@@ -1,9 +1,9 @@
 //! Pieces of a section that are read.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// A piece of a document that is read: of a section, or of an answer in words.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Words {
     /// Sentences.
@@ -19,7 +19,7 @@ pub enum Words {
 }
 
 /// One entry of a numbered list.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
 pub struct Entry {
     /// Its number.
     pub number: usize,
@@ -30,7 +30,7 @@ pub struct Entry {
 }
 
 /// A list.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
 pub struct List {
     /// Its title, without a colon; may be empty.
     pub title: String,
@@ -39,7 +39,7 @@ pub struct List {
 }
 
 /// A table.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 pub struct Table {
     /// Its title, without a colon; may be empty.
     pub title: String,
@@ -68,7 +68,7 @@ impl Table {
 }
 
 /// A column of a table.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
 pub struct Column {
     /// Its head, with the unit where all cells have one.
     pub head: String,
@@ -97,7 +97,7 @@ impl Column {
 }
 
 /// A cell of a table.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
 pub struct Cell {
     /// Its text.
     pub text: String,

@@ -218,10 +218,7 @@ mod tests {
             },
         };
         let first = Screen::new(gyrocal_document::Standing::Bad, "INCONSISTENT", "too large");
-        let html = gyrocal_report::to_html(&crate::page(vec![of_monte_carlo(
-            &report,
-            Screen::default(),
-        )]));
+        let html = gyrocal_report::to_html(&crate::page(vec![of_monte_carlo(&report, first)]));
         let html = html.unwrap_or_default();
         for words in [
             "s.toml",

@@ -56,7 +56,7 @@ mod _gyrocal {
     #[pymodule_export]
     use crate::record::HeldRecord;
     #[pymodule_export]
-    use crate::report::report;
+    use crate::report::{html_of, report, text_of};
     #[pymodule_export]
     use crate::simulate::simulate;
 

@@ -2,9 +2,11 @@
 
 use gyrocal_answer::read_text;
 use gyrocal_design::PlanResult;
+use gyrocal_document::Words;
 use gyrocal_fleet::FleetResult;
 use gyrocal_pages::{Part, of_calibration, of_fleet, of_plan, of_result, page};
 use gyrocal_record::{CalibrationReport, SourceText};
+use gyrocal_report::{to_html, words_to_html};
 use pyo3::prelude::*;
 use serde::de::DeserializeOwned;
 
@@ -13,6 +15,18 @@ use crate::plant::HeldPage;
 
 /// A result: its class, its text (JSON) and, of a plant, its page.
 type Given<'a> = (&'a str, &'a str, Option<&'a HeldPage>);
+
+/// An answer in words (JSON) as text for a terminal.
+#[pyfunction]
+pub(crate) fn text_of(words: &str) -> PyResult<String> {
+    Ok(gyrocal_cli::text_of(&read::<Vec<Words>>(words)?))
+}
+
+/// The same as HTML for a notebook.
+#[pyfunction]
+pub(crate) fn html_of(words: &str) -> PyResult<String> {
+    Ok(words_to_html(&read::<Vec<Words>>(words)?).map_err(|error| Failure::of_text(&error))?)
+}
 
 /// The page of results as one HTML file.
 #[pyfunction]
@@ -30,9 +44,7 @@ pub(crate) fn report(
 fn html(results: &[Given<'_>]) -> Outcome<String> {
     let parts = results.iter().copied().map(part);
     let parts: Vec<Part> = parts.collect::<Outcome<_>>()?;
-    page(parts)
-        .to_html()
-        .map_err(|error| Failure::of_text(&error))
+    to_html(&page(parts)).map_err(|error| Failure::of_text(&error))
 }
 
 fn part((kind, result, page): Given<'_>) -> Outcome<Part> {
@@ -45,14 +57,8 @@ fn part((kind, result, page): Given<'_>) -> Outcome<Part> {
         "Fleet" => of_fleet(&read::<FleetResult>(result)?),
         "PlantDiagnosis" => match page {
             Some(page) => page.part.clone()?,
-            None => {
-                return Err(Failure::of_value(
-                    "report",
-                    "a PlantDiagnosis that was pickled, without its fits",
-                    "one that Plant.diagnose returned here",
-                    "diagnose the record again: its page has charts over time",
-                ));
-            }
+            // One that was pickled has no charts.
+            None => of_result(&read_text(&SourceText::new(result, kind)?)?),
         },
         other => {
             return Err(Failure::of_value(

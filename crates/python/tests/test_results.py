@@ -69,8 +69,8 @@ def test_words_and_html_are_those_of_the_command(simulated, diagnosed):
     words = " ".join(str(diagnosed).split())
     assert diagnosed.findings[0].name in words
     shown = diagnosed._repr_html_()
-    assert "<table>" in shown and "gyro_y.g_z" in shown and "<script" not in shown
-    assert shown.count("<table>") == shown.count("</table>")
+    assert "<table" in shown and "gyro_y.g_z" in shown and "<script" not in shown
+    assert shown.count("<table") == shown.count("</table>")
     record = gyrocal.Record(simulated.record.time_s, simulated.record.accel_g, name="<b>&")
     shown = gyrocal.diagnose(record, simulated.bench)._repr_html_()
     assert "<b>&" not in shown and "&lt;b&gt;&amp;" in shown

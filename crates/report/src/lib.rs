@@ -85,7 +85,7 @@ mod svg;
 mod text;
 
 pub use error::Error;
-pub use page::to_html;
+pub use page::{to_html, words_to_html};
 pub use picture::{Picture, write_svg};
 #[cfg(feature = "png")]
 pub use png::{to_png, write_png};

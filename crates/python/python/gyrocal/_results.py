@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import html
 import json
 import os
 import textwrap
@@ -32,9 +31,6 @@ __all__ = [
     "Simulation",
     "report",
 ]
-
-#: Columns of a line of text.
-_WIDTH = 96
 
 
 class Fields:
@@ -147,13 +143,13 @@ class Result(Fields):
         return json.loads(self._blocks or "[]")
 
     def __str__(self) -> str:
-        return "\n\n".join(filter(None, map(_block_text, self._shown())))
+        return _gyrocal.text_of(json.dumps(self._shown())).rstrip("\n")
 
     def __repr__(self) -> str:
         return f"<gyrocal.{type(self).__name__}>"
 
     def _repr_html_(self) -> str:
-        return "\n".join(map(_block_html, self._shown()))
+        return _gyrocal.html_of(json.dumps(self._shown()))
 
 
 def report(results: Result | Iterable[Result], path: str | os.PathLike[str]) -> None:
@@ -281,10 +277,9 @@ class Calibration(Result):
             for one in self._fields["coefficients"]
         ]
         heads = ["coefficient", "estimate", "sigma", "unit", "determined"]
-        columns = [{"head": head, "is_number": head in ("estimate", "sigma")} for head in heads]
-        table = {"title": "Drift coefficients:", "columns": columns, "rows": cells}
         blocks: list[dict[str, Any]] = [{"paragraph": self.verdict_text}]
-        return [*blocks, {"table": table}] if cells else blocks
+        table = _table("Drift coefficients", heads, ("estimate", "sigma"), cells)
+        return [*blocks, table] if cells else blocks
 
     def __repr__(self) -> str:
         return f"<gyrocal.Calibration {self.verdict}: {len(self.names)} coefficients>"
@@ -337,7 +332,6 @@ class Characteristics(Result):
 
     def _shown(self) -> list[dict[str, Any]]:
         heads = ["cell", "figure", "measured", "runs", "holds"]
-        columns = [{"head": head, "is_number": head in ("measured", "runs")} for head in heads]
         words = {True: "yes", False: "no", None: ""}
         cells = [
             [
@@ -349,7 +343,7 @@ class Characteristics(Result):
             ]
             for row in self._rows()
         ]
-        return [{"table": {"title": "Operating characteristics:", "columns": columns, "rows": cells}}]
+        return [_table("Operating characteristics", heads, ("measured", "runs"), cells)]
 
     def __repr__(self) -> str:
         return f"<gyrocal.Characteristics: {len(self._fields['cells'])} cells>"
@@ -393,7 +387,7 @@ class Fleet(Result):
 
 
 class PlantDiagnosis(Result):
-    """Result of :meth:`gyrocal.Plant.diagnose`. One that was pickled or copied has no :meth:`report`."""
+    """Result of :meth:`gyrocal.Plant.diagnose`. The page of one that was pickled has no charts."""
 
     __slots__ = ("_charts",)
     _charts: _gyrocal.PlantPage | None
@@ -480,7 +474,7 @@ class Simulation(Result):
             {"paragraph": f"A simulated record of {self.rows} rows, seed {self.manifest.seed}."}
         ]
         if hidden:
-            blocks.append({"list": {"title": "Hidden effects:", "entries": hidden}})
+            blocks.append({"list": {"title": "Hidden effects", "entries": hidden}})
         return blocks
 
     def __repr__(self) -> str:
@@ -502,60 +496,8 @@ def _finding_rows(findings: list[dict[str, Any]]) -> list[dict[str, Any]]:
     return rows
 
 
-def _wrap(text: str, first: str = "", rest: str = "") -> str:
-    return textwrap.fill(
-        text, _WIDTH, initial_indent=first, subsequent_indent=rest, break_on_hyphens=False
-    )
-
-
-def _block_text(block: dict[str, Any]) -> str:
-    (kind, content), *_ = block.items()
-    if kind == "paragraph":
-        return _wrap(content)
-    if kind == "entry":
-        lines = [f"{content['number']}. {content['title']}"]
-        return "\n".join(lines + [_wrap(words, "   ", "   ") for words in content["paragraphs"]])
-    if kind == "list":
-        return "\n".join([content["title"]] + [_wrap(one, "- ", "  ") for one in content["entries"]])
-    if kind == "table":
-        return _table_text(content)
-    return ""
-
-
-def _table_text(table: dict[str, Any]) -> str:
-    heads = [column["head"] for column in table["columns"]]
-    rows = [heads, *table["rows"]]
-    widths = [max(len(row[index]) for row in rows) for index in range(len(heads))]
-    lines = []
-    for row in rows:
-        cells = [
-            cell.rjust(width) if column["is_number"] else cell.ljust(width)
-            for cell, width, column in zip(row, widths, table["columns"])
-        ]
-        lines.append("  ".join(cells).rstrip())
-    lines.insert(1, "  ".join("-" * width for width in widths))
-    return "\n".join([table["title"], *lines])
-
-
-def _block_html(block: dict[str, Any]) -> str:
-    (kind, content), *_ = block.items()
-    text = html.escape
-    if kind == "paragraph":
-        return f"<p>{text(content)}</p>"
-    if kind == "entry":
-        paragraphs = "".join(f"<p>{text(words)}</p>" for words in content["paragraphs"])
-        return f"<p><b>{content['number']}. {text(content['title'])}</b></p>{paragraphs}"
-    if kind == "list":
-        entries = "".join(f"<li>{text(entry)}</li>" for entry in content["entries"])
-        return f"<p>{text(content['title'])}</p><ul>{entries}</ul>"
-    if kind == "table":
-        heads = "".join(f"<th>{text(column['head'])}</th>" for column in content["columns"])
-        rows = "".join(
-            "<tr>" + "".join(f"<td>{text(cell)}</td>" for cell in row) + "</tr>"
-            for row in content["rows"]
-        )
-        return (
-            f"<p>{text(content['title'])}</p>"
-            f"<table><thead><tr>{heads}</tr></thead><tbody>{rows}</tbody></table>"
-        )
-    return ""
+def _table(title: str, heads: list[str], numbers: tuple[str, ...], rows: list[list[str]]) -> dict[str, Any]:
+    """A table of plain cells, as those of the library."""
+    columns = [{"head": head, "is_number": head in numbers} for head in heads]
+    cells = [[{"text": text, "strong": False} for text in row] for row in rows]
+    return {"table": {"title": title, "columns": columns, "rows": cells}}

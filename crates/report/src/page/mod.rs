@@ -10,4 +10,4 @@ mod decimate;
 mod render;
 mod strips;
 
-pub use render::to_html;
+pub use render::{to_html, words_to_html};

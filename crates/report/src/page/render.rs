@@ -38,11 +38,7 @@ const SCRIPTS: [&str; 4] = [
 /// [`Error::UnequalLengths`], [`Error::Value`] and [`Error::Empty`] of a chart that cannot be drawn;
 /// [`Error::Template`].
 pub fn to_html(page: &Page) -> Result<String, Error> {
-    let mut environment = Environment::new();
-    environment.set_auto_escape_callback(|_| AutoEscape::Html);
-    for (name, text) in TEMPLATES {
-        environment.add_template(name, text).map_err(template)?;
-    }
+    let environment = environment()?;
     let mut drawing = Drawing::default();
     let parts: Vec<Value> = page
         .parts
@@ -61,6 +57,30 @@ pub fn to_html(page: &Page) -> Result<String, Error> {
             scripts => SCRIPTS,
         })
         .map_err(template)
+}
+
+/// An answer in words as HTML without a style, to be shown inside another page.
+///
+/// # Errors
+/// [`Error::Template`].
+pub fn words_to_html(pieces: &[Words]) -> Result<String, Error> {
+    let environment = environment()?;
+    let items = environment.get_template("items.html").map_err(template)?;
+    let shown = pieces.iter().map(|piece| {
+        let mut item = of_words(piece);
+        make_printable(&mut item);
+        items.render(context! { item => item }).map_err(template)
+    });
+    shown.collect()
+}
+
+fn environment() -> Result<Environment<'static>, Error> {
+    let mut environment = Environment::new();
+    environment.set_auto_escape_callback(|_| AutoEscape::Html);
+    for (name, text) in TEMPLATES {
+        environment.add_template(name, text).map_err(template)?;
+    }
+    Ok(environment)
 }
 
 fn template(reason: minijinja::Error) -> Error {
