@@ -10,7 +10,7 @@ use crate::number::short;
 use crate::page::Bars;
 use crate::picture::Picture;
 use crate::span::Span;
-use crate::style::{BELOW, BLACK, BODY, GREY, HAIR, INK, SMALL, THIN, WHITE, colour};
+use crate::style::{BELOW, BODY, GREY, HAIR, INK, LEVEL, SMALL, THIN, WHITE, colour};
 use crate::text;
 
 /// Height of a bar with its gap and of the heading of a group, px.
@@ -31,7 +31,7 @@ impl Picture for Bars {
         let height = PITCH * bars as f64 + HEAD * self.groups.len() as f64 + BELOW;
         let threshold = self.threshold.iter();
         let legend: Vec<Legend> = threshold
-            .map(|(_, name)| Legend::line(LineStyle::dashed(BLACK, THIN), name.as_str()))
+            .map(|(_, name)| Legend::line(LineStyle::dashed(LEVEL, THIN), name.as_str()))
             .collect();
         Ok(figure(
             &self.title,
@@ -107,7 +107,7 @@ impl Bars {
         }
         if let Some(value) = threshold {
             let x = x_of(value);
-            let style = LineStyle::dashed(BLACK, THIN);
+            let style = LineStyle::dashed(LEVEL, THIN);
             canvas.line(&[(x, frame.top), (x, frame.bottom)], style);
         }
         for (words, y) in headings {

@@ -7,11 +7,11 @@ use crate::error::Error;
 use crate::figure::{Legend, figure};
 use crate::geometry::Rect;
 use crate::layout::Layout;
-use crate::page::{Chart, Line, LineKind, Panel};
+use crate::page::{Chart, Line, LineKind, Panel, Tint};
 use crate::picture::Picture;
 use crate::polyline::longest_interval;
 use crate::span::Span;
-use crate::style::{BAND_OPACITY, BLACK, DATA, LEGEND_LINE, PURPLE, SMALL, THIN, colour};
+use crate::style::{BAND_OPACITY, BROAD, DATA, LEGEND_LINE, LEVEL, MARK, SMALL, THIN, colour};
 use crate::text;
 
 /// Least height of a panel, px.
@@ -28,7 +28,7 @@ impl Picture for Chart {
     fn to_svg_of(&self, source: &str) -> Result<String, Error> {
         self.check()?;
         let panel_px = f64::from(self.height_px).clamp(LEAST_PX, 2.0 * LEAST_PX);
-        let layout = Layout::new(self.columns, self.panels.len(), panel_px).with_own_abscissae();
+        let layout = Layout::new(self.columns, self.panels.len(), panel_px);
         Ok(figure(
             &self.title,
             &[&self.caption, source],
@@ -51,7 +51,7 @@ impl Chart {
         let lines = lines.map(|line| (&line.label, line.legend()));
         let levels = self.panels.iter().flat_map(|panel| &panel.levels);
         let levels = levels.map(|level| {
-            let entry = Legend::line(LineStyle::dashed(BLACK, THIN), level.label.as_str());
+            let entry = Legend::line(LineStyle::dashed(LEVEL, THIN), level.label.as_str());
             (&level.label, entry)
         });
         let mut shown: Vec<&String> = Vec::new();
@@ -119,7 +119,6 @@ impl Chart {
             let labels = Labels {
                 name: &panel.name,
                 note: &self.note(panel, halves[index]),
-                abscissa: layout.shows_abscissa(index),
                 ordinate_title: layout.is_first_in_row(index) || panel.unit.is_some(),
             };
             let has_data = along.is_some() && up.is_some() && panel.has_data();
@@ -154,11 +153,20 @@ fn foot(axes: &Axes) -> f64 {
 }
 
 impl Line {
+    /// Measured values are under those of models, which often hide them.
+    fn width_px(&self) -> f64 {
+        match self.tint {
+            Tint::Measured => BROAD,
+            _ => DATA,
+        }
+    }
+
     fn legend(&self) -> Legend {
         let colour = colour(self.tint);
         match self.kind {
             LineKind::Solid => {
-                Legend::line(LineStyle::solid(colour, LEGEND_LINE), self.label.as_str())
+                let style = LineStyle::solid(colour, self.width_px().max(LEGEND_LINE));
+                Legend::line(style, self.label.as_str())
             }
             LineKind::Dashed => Legend::line(LineStyle::dashed(colour, THIN), self.label.as_str()),
             LineKind::Points => Legend::dot(colour, self.label.as_str()),
@@ -193,20 +201,20 @@ impl Panel {
             let colour = colour(band.tint);
             axes.band(canvas, &self.abscissa, edges, colour, self.longest());
         }
-        for level in &self.levels {
-            axes.horizontal_line(canvas, level.value, LineStyle::dashed(BLACK, THIN));
-        }
         for line in &self.lines {
             self.draw_line(canvas, axes, line);
         }
+        for level in &self.levels {
+            axes.horizontal_line(canvas, level.value, LineStyle::dashed(LEVEL, THIN));
+        }
         for (row, mark) in self.marks.iter().enumerate() {
-            axes.vertical_line(canvas, mark.value, LineStyle::dashed(PURPLE, THIN));
+            axes.vertical_line(canvas, mark.value, LineStyle::dashed(MARK, THIN));
             let (x, _) = axes.point(mark.value, 0.0);
             if (axes.frame.left..=axes.frame.right).contains(&x) {
                 // Each label in a row of its own: marks may be close.
                 let y = axes.frame.top + SMALL + 1.3 * SMALL * row as f64;
                 let room = axes.frame.right - text::width_px(&mark.label, SMALL, false);
-                let style = TextStyle::new(SMALL, Align::Start).colour(PURPLE);
+                let style = TextStyle::new(SMALL, Align::Start).colour(MARK);
                 canvas.text(&mark.label, ((x + 3.0).min(room), y), style);
             }
         }
@@ -216,7 +224,7 @@ impl Panel {
         let colour = colour(line.tint);
         let style = match line.kind {
             LineKind::Dashed => LineStyle::dashed(colour, THIN),
-            _ => LineStyle::solid(colour, DATA),
+            _ => LineStyle::solid(colour, line.width_px()),
         };
         let points = self.abscissa.iter().zip(&line.values);
         let points = points.map(|(x, y)| (axes.point(*x, *y), *x));
@@ -253,7 +261,7 @@ impl Panel {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::page::{Band, Level, Mark, Tint};
+    use crate::page::{Band, Level, Mark};
 
     fn chart(logarithmic: bool) -> Chart {
         let line = |label: &str, kind, values: [f64; 3]| Line {
