@@ -70,7 +70,7 @@ pub struct ChannelCorrelation {
     pub model: ModelVersion,
     /// 0, 1, 2 for x, y, z.
     pub axis: usize,
-    /// Correlation at each lag, from one row on.
+    /// Correlation at each lag, from one row on; nan where no two innovations are so far apart.
     pub correlation: Vec<f64>,
     /// Half width of the 95 % band of white innovations.
     pub band: f64,
@@ -116,8 +116,14 @@ impl Diagnosis<'_> {
             let probability = self.result.false_alarm_probability;
             let found = autocorrelation(innovations, lags, probability)?;
             for axis in 0..3 {
-                let correlation: Vec<f64> = found.correlation.iter().map(|lag| lag[axis]).collect();
-                let sigma = found.sigma.first().map_or(f64::NAN, |lag| lag[axis]);
+                // No product has no deviation.
+                let known = |value: f64, sigma: f64| if sigma > 0.0 { value } else { f64::NAN };
+                let lags = found.correlation.iter().zip(&found.sigma);
+                let correlation: Vec<f64> = lags
+                    .map(|(lag, sigma)| known(lag[axis], sigma[axis]))
+                    .collect();
+                let sigma = found.sigma.first().map_or(0.0, |lag| lag[axis]);
+                let sigma = known(sigma, sigma);
                 let band = NORMAL_97_5 * sigma;
                 channels.push(ChannelCorrelation {
                     model,

@@ -105,7 +105,8 @@ const gyrocalCharts = (() => {
     const panels = chart.sameScale ? chart.panels : [panel];
     let [least, most] = [Infinity, -Infinity];
     for (const one of panels) {
-      const [low, high] = range(one, settled, to);
+      // Abscissas of other meaning have no limits in common.
+      const [low, high] = one === panel || chart.linked ? range(one, settled, to) : range(one, -Infinity, Infinity);
       least = Math.min(least, low);
       most = Math.max(most, high);
     }

@@ -28,8 +28,6 @@ pub(crate) struct Labels<'a> {
     pub name: &'a str,
     /// Above the frame at its right: statistics.
     pub note: &'a str,
-    /// Whether labels and title of the abscissa are drawn.
-    pub abscissa: bool,
     /// Whether the title of the ordinate is drawn.
     pub ordinate_title: bool,
 }
@@ -122,7 +120,7 @@ impl Axes {
     /// Grid, ticks, labels, titles and the two axes.
     fn draw_frame(&self, canvas: &mut Canvas, labels: Labels<'_>) {
         self.draw_ordinate(canvas, labels.ordinate_title);
-        self.draw_abscissa(canvas, labels.abscissa);
+        self.draw_abscissa(canvas);
         let frame = self.frame;
         let corners = [
             (frame.left, frame.top),
@@ -166,7 +164,7 @@ impl Axes {
         }
     }
 
-    fn draw_abscissa(&self, canvas: &mut Canvas, labels: bool) {
+    fn draw_abscissa(&self, canvas: &mut Canvas) {
         let frame = self.frame;
         for &value in &self.x.minor {
             let x = self.x_of(value);
@@ -182,14 +180,12 @@ impl Axes {
             canvas.line(&tick, LineStyle::solid(GREY, HAIR));
             let half = 0.5 * text::width_px(label, SMALL, false);
             let room = (frame.left - OVERHANG)..=(frame.right + OVERHANG);
-            if labels && room.contains(&(x - half)) && room.contains(&(x + half)) {
+            if room.contains(&(x - half)) && room.contains(&(x + half)) {
                 canvas.text(label, (x, frame.bottom + 12.0), style);
             }
         }
-        if labels {
-            let title = text::fit(&self.x.title, SMALL, false, frame.width() + 40.0);
-            canvas.text(&title, (frame.centre().0, frame.bottom + 28.0), style);
-        }
+        let title = text::fit(&self.x.title, SMALL, false, frame.width() + 40.0);
+        canvas.text(&title, (frame.centre().0, frame.bottom + 28.0), style);
     }
 }
 

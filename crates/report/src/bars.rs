@@ -9,7 +9,7 @@ use crate::geometry::Rect;
 use crate::number::short;
 use crate::picture::Picture;
 use crate::span::Span;
-use crate::style::{BELOW, BLACK, BODY, GREY, HAIR, INK, SMALL, THIN, WHITE, colour};
+use crate::style::{BELOW, BODY, GREY, HAIR, INK, LEVEL, SMALL, THIN, WHITE, colour};
 use crate::text;
 use gyrocal_document::Bars;
 
@@ -31,7 +31,7 @@ impl Picture for Bars {
         let height = PITCH * bars as f64 + HEAD * self.groups.len() as f64 + BELOW;
         let threshold = self.threshold.iter();
         let legend: Vec<Legend> = threshold
-            .map(|(_, name)| Legend::line(LineStyle::dashed(BLACK, THIN), name.as_str()))
+            .map(|(_, name)| Legend::line(LineStyle::dashed(LEVEL, THIN), name.as_str()))
             .collect();
         Ok(figure(
             &self.title,
@@ -106,7 +106,7 @@ fn draw(bars: &Bars, canvas: &mut Canvas, body: Rect) {
     }
     if let Some(value) = threshold {
         let x = x_of(value);
-        let style = LineStyle::dashed(BLACK, THIN);
+        let style = LineStyle::dashed(LEVEL, THIN);
         canvas.line(&[(x, frame.top), (x, frame.bottom)], style);
     }
     for (words, y) in headings {

@@ -30,9 +30,7 @@ impl Picture for Estimates {
         let widths = names.map(|(name, _)| text::width_px(name, SMALL, false));
         let names_px = widths.fold(20.0, f64::max).min(NAMES_PX);
         let panel_px = ROW_PX * self.models.len() as f64 + 10.0;
-        let layout = Layout::new(IN_A_ROW, self.rows.len(), panel_px)
-            .with_own_abscissae()
-            .with_left(34.0);
+        let layout = Layout::new(IN_A_ROW, self.rows.len(), panel_px).with_left(34.0);
         let remarks = match &*self.note_head {
             "" => String::new(),
             head => format!("At the right above each panel: {head}."),
@@ -99,7 +97,6 @@ fn draw(estimates: &Estimates, canvas: &mut Canvas, layout: Layout, body: Rect, 
         let labels = Labels {
             name: &row.name,
             note: &row.note,
-            abscissa: true,
             ordinate_title: false,
         };
         axes.draw(canvas, labels, has_data, |axes, canvas| {

@@ -10,8 +10,6 @@ pub(crate) struct Layout {
     pub panels: usize,
     /// Height of one panel, px.
     pub panel_px: f64,
-    /// Each panel has an abscissa of its own; otherwise only the lowest ones are labelled.
-    pub own_abscissa: bool,
     /// Room left of each panel, px.
     pub left_px: f64,
 }
@@ -22,16 +20,7 @@ impl Layout {
             columns: columns.max(1),
             panels,
             panel_px,
-            own_abscissa: false,
             left_px: LEFT,
-        }
-    }
-
-    /// Each panel has an abscissa of its own.
-    pub(crate) fn with_own_abscissae(self) -> Self {
-        Self {
-            own_abscissa: true,
-            ..self
         }
     }
 
@@ -43,7 +32,7 @@ impl Layout {
     /// Height of all panels, px.
     pub(crate) fn height(self) -> f64 {
         let rows = self.panels.div_ceil(self.columns) as f64;
-        rows * self.pitch() + if self.own_abscissa { 0.0 } else { BELOW }
+        rows * self.pitch()
     }
 
     /// The frame of a panel in the body of the figure.
@@ -61,17 +50,12 @@ impl Layout {
         }
     }
 
-    /// Whether the abscissa of a panel is labelled.
-    pub(crate) fn shows_abscissa(self, index: usize) -> bool {
-        self.own_abscissa || index + self.columns >= self.panels
-    }
-
     /// Whether a panel is the first of its row.
     pub(crate) fn is_first_in_row(self, index: usize) -> bool {
         index.is_multiple_of(self.columns)
     }
 
     fn pitch(self) -> f64 {
-        ABOVE + self.panel_px + if self.own_abscissa { BELOW + 4.0 } else { 6.0 }
+        ABOVE + self.panel_px + BELOW + 4.0
     }
 }

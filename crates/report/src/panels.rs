@@ -11,9 +11,9 @@ use crate::page::chart::{check, halves, note};
 use crate::picture::Picture;
 use crate::polyline::longest_interval;
 use crate::span::Span;
-use crate::style::{BAND_OPACITY, BLACK, DATA, LEGEND_LINE, PURPLE, SMALL, THIN, colour};
+use crate::style::{BAND_OPACITY, BROAD, DATA, LEGEND_LINE, LEVEL, MARK, SMALL, THIN, colour};
 use crate::text;
-use gyrocal_document::{Chart, Line, LineKind, Panel};
+use gyrocal_document::{Chart, Line, LineKind, Panel, Tint};
 
 /// Least height of a panel, px.
 const LEAST_PX: f64 = 150.0;
@@ -29,7 +29,7 @@ impl Picture for Chart {
     fn to_svg_of(&self, source: &str) -> Result<String, Error> {
         check(self)?;
         let panel_px = f64::from(self.height_px).clamp(LEAST_PX, 2.0 * LEAST_PX);
-        let layout = Layout::new(self.columns, self.panels.len(), panel_px).with_own_abscissae();
+        let layout = Layout::new(self.columns, self.panels.len(), panel_px);
         Ok(figure(
             &self.title,
             &[&self.caption, source],
@@ -51,7 +51,7 @@ fn legend(chart: &Chart) -> Vec<Legend> {
     let lines = lines.map(|line| (&line.label, legend_of(line)));
     let levels = chart.panels.iter().flat_map(|panel| &panel.levels);
     let levels = levels.map(|level| {
-        let entry = Legend::line(LineStyle::dashed(BLACK, THIN), level.label.as_str());
+        let entry = Legend::line(LineStyle::dashed(LEVEL, THIN), level.label.as_str());
         (&level.label, entry)
     });
     let mut shown: Vec<&String> = Vec::new();
@@ -119,7 +119,6 @@ fn draw(chart: &Chart, canvas: &mut Canvas, layout: Layout, body: Rect) {
         let labels = Labels {
             name: &panel.name,
             note: &note(chart, panel, cut[index]),
-            abscissa: layout.shows_abscissa(index),
             ordinate_title: layout.is_first_in_row(index) || panel.unit.is_some(),
         };
         let has_data = along.is_some() && up.is_some() && has_data(panel);
@@ -152,10 +151,21 @@ fn foot(axes: &Axes) -> f64 {
     }
 }
 
+/// Measured values are under those of models, which often hide them.
+fn width_px(line: &Line) -> f64 {
+    match line.tint {
+        Tint::Measured => BROAD,
+        _ => DATA,
+    }
+}
+
 fn legend_of(line: &Line) -> Legend {
     let colour = colour(line.tint);
     match line.kind {
-        LineKind::Solid => Legend::line(LineStyle::solid(colour, LEGEND_LINE), line.label.as_str()),
+        LineKind::Solid => {
+            let style = LineStyle::solid(colour, width_px(line).max(LEGEND_LINE));
+            Legend::line(style, line.label.as_str())
+        }
         LineKind::Dashed => Legend::line(LineStyle::dashed(colour, THIN), line.label.as_str()),
         LineKind::Points => Legend::dot(colour, line.label.as_str()),
         LineKind::Bars => Legend::area(colour, 1.0, line.label.as_str()),
@@ -187,20 +197,20 @@ fn draw_panel(panel: &Panel, canvas: &mut Canvas, axes: &Axes) {
         let colour = colour(band.tint);
         axes.band(canvas, &panel.abscissa, edges, colour, longest(panel));
     }
-    for level in &panel.levels {
-        axes.horizontal_line(canvas, level.value, LineStyle::dashed(BLACK, THIN));
-    }
     for line in &panel.lines {
         draw_line(panel, canvas, axes, line);
     }
+    for level in &panel.levels {
+        axes.horizontal_line(canvas, level.value, LineStyle::dashed(LEVEL, THIN));
+    }
     for (row, mark) in panel.marks.iter().enumerate() {
-        axes.vertical_line(canvas, mark.value, LineStyle::dashed(PURPLE, THIN));
+        axes.vertical_line(canvas, mark.value, LineStyle::dashed(MARK, THIN));
         let (x, _) = axes.point(mark.value, 0.0);
         if (axes.frame.left..=axes.frame.right).contains(&x) {
             // Each label in a row of its own: marks may be close.
             let y = axes.frame.top + SMALL + 1.3 * SMALL * row as f64;
             let room = axes.frame.right - text::width_px(&mark.label, SMALL, false);
-            let style = TextStyle::new(SMALL, Align::Start).colour(PURPLE);
+            let style = TextStyle::new(SMALL, Align::Start).colour(MARK);
             canvas.text(&mark.label, ((x + 3.0).min(room), y), style);
         }
     }
@@ -210,7 +220,7 @@ fn draw_line(panel: &Panel, canvas: &mut Canvas, axes: &Axes, line: &Line) {
     let colour = colour(line.tint);
     let style = match line.kind {
         LineKind::Dashed => LineStyle::dashed(colour, THIN),
-        _ => LineStyle::solid(colour, DATA),
+        _ => LineStyle::solid(colour, width_px(line)),
     };
     let points = panel.abscissa.iter().zip(&line.values);
     let points = points.map(|(x, y)| (axes.point(*x, *y), *x));
@@ -246,7 +256,7 @@ fn longest(panel: &Panel) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use gyrocal_document::{Band, Level, Mark, Tint};
+    use gyrocal_document::{Band, Level, Mark};
 
     fn chart(logarithmic: bool) -> Chart {
         let line = |label: &str, kind, values: [f64; 3]| Line {

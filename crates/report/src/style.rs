@@ -26,6 +26,8 @@ pub(crate) const SMALL: f64 = 10.0;
 pub(crate) const HAIR: f64 = 0.75;
 pub(crate) const THIN: f64 = 1.0;
 pub(crate) const DATA: f64 = 1.375;
+/// Width of the line of measured values, under those of models, px.
+pub(crate) const BROAD: f64 = 3.0;
 /// Width of data lines in a legend, px.
 pub(crate) const LEGEND_LINE: f64 = 2.0;
 
@@ -42,28 +44,27 @@ impl fmt::Display for Colour {
     }
 }
 
-/// Colours of Okabe and Ito, which people with any common colour blindness tell apart
-/// (<https://jfly.uni-koeln.de/color/>).
-pub(crate) const ORANGE: Colour = Colour(0xE6, 0x9F, 0x00);
-pub(crate) const SKY: Colour = Colour(0x56, 0xB4, 0xE9);
-pub(crate) const BLUE: Colour = Colour(0x00, 0x72, 0xB2);
-pub(crate) const VERMILION: Colour = Colour(0xD5, 0x5E, 0x00);
-pub(crate) const PURPLE: Colour = Colour(0xCC, 0x79, 0xA7);
+/// Colours of text, axes and grid.
 pub(crate) const BLACK: Colour = Colour(0x11, 0x11, 0x11);
 /// Labels of axes and other text of less weight.
 pub(crate) const INK: Colour = Colour(0x55, 0x55, 0x55);
 pub(crate) const GREY: Colour = Colour(0x99, 0x99, 0x99);
 pub(crate) const FAINT: Colour = Colour(0xE8, 0xE8, 0xE8);
 pub(crate) const WHITE: Colour = Colour(0xFF, 0xFF, 0xFF);
+/// Vertical lines.
+pub(crate) const MARK: Colour = Colour(0xCC, 0x79, 0xA7);
+/// Horizontal lines.
+pub(crate) const LEVEL: Colour = Colour(0x4A, 0x55, 0x61);
 
-/// Colour of a series by its meaning: the nominal model and the extended one have one each in every picture.
+/// Colour of a series by its meaning, as on a light page: greys, and colours of Okabe and Ito, which people with
+/// any common colour blindness tell apart (<https://jfly.uni-koeln.de/color/>).
 pub(crate) fn colour(tint: Tint) -> Colour {
     match tint {
-        Tint::Nominal => VERMILION,
-        Tint::Expected => BLACK,
-        Tint::Alternative => ORANGE,
-        Tint::Other => GREY,
-        Tint::Measured => SKY,
-        Tint::Extended => BLUE,
+        Tint::Measured => Colour(0x7A, 0x87, 0x94),
+        Tint::Nominal => Colour(0xD5, 0x5E, 0x00),
+        Tint::Extended => Colour(0x00, 0x72, 0xB2),
+        Tint::Expected => LEVEL,
+        Tint::Alternative => Colour(0xE6, 0x9F, 0x00),
+        Tint::Other => Colour(0x9A, 0xA5, 0xB0),
     }
 }

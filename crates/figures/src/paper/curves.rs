@@ -98,7 +98,7 @@ impl Track {
             abscissa,
             bands: vec![Band {
                 label: "±2σ (95 %)".to_owned(),
-                tint: Tint::Measured,
+                tint: Tint::Extended,
                 lower: edge(-2.0),
                 upper: edge(2.0),
             }],
@@ -164,7 +164,7 @@ fn convergence(gyro: usize, tracks: &[Track; 3], batch: &CalibrationTrial) -> Ch
 
 fn innovations(exact: &Simulation, paper: Track, default: Track) -> Chart {
     let time = TimeAxis::of(&exact.record.time_s);
-    let half = vec![NORMAL_97_5 * exact.bench.accel_noise_g; time.values.len()];
+    let half_g = NORMAL_97_5 * exact.bench.accel_noise_g;
     let both = paper.innovation_g.into_iter().zip(default.innovation_g);
     let panels = AXES.into_iter().zip(both).map(|(name, (before, after))| {
         let micro_g = |values: &[f64]| format::short(1e6 * rms_of_present(values).0, 2);
@@ -172,16 +172,16 @@ fn innovations(exact: &Simulation, paper: Track, default: Track) -> Chart {
             name: name.to_owned(),
             note: format!("rms {} → {} µg", micro_g(&before), micro_g(&after)),
             abscissa: time.values.clone(),
-            bands: vec![Band {
-                label: "95 % of the noise of the accelerometers".to_owned(),
-                tint: Tint::Expected,
-                lower: half.iter().map(|half| -half).collect(),
-                upper: half.clone(),
-            }],
             lines: vec![
                 line("paper's filter", Tint::Nominal, before),
                 line("default filter", Tint::Extended, after),
             ],
+            levels: [-half_g, half_g]
+                .map(|value| Level {
+                    label: "95 % of the noise of the accelerometers".to_owned(),
+                    value,
+                })
+                .into(),
             ..Panel::default()
         }
     });

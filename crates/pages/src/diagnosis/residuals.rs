@@ -52,7 +52,11 @@ fn correlation(channels: Vec<ChannelCorrelation>) -> Chart {
     let has_extended = channels
         .iter()
         .any(|one| one.model == ModelVersion::Extended);
-    let total = 3 * LAGS;
+    let known = channels
+        .iter()
+        .filter(|one| one.model == ModelVersion::Nominal);
+    let known = known.flat_map(|one| &one.correlation);
+    let total = known.filter(|value| !value.is_nan()).count();
     let nominal = outside(ModelVersion::Nominal);
     let title = if has_extended {
         let extended = outside(ModelVersion::Extended);
@@ -70,10 +74,14 @@ fn correlation(channels: Vec<ChannelCorrelation>) -> Chart {
             let (label, tint) = look(channel.model);
             line(label, tint, channel.correlation.clone())
         });
-        let notes = of_axis
-            .iter()
-            .map(|channel| format!("{} {:+.3}", look(channel.model).0, channel.largest));
-        let note = format!("largest: {}", notes.collect::<Vec<_>>().join(", "));
+        let shown = of_axis.iter().filter(|channel| channel.samples > 0);
+        let largest: Vec<String> = shown
+            .map(|channel| format!("{:+.3}", channel.largest))
+            .collect();
+        let note = match &*largest {
+            [] => String::new(),
+            both => format!("largest {}", both.join(" → ")),
+        };
         panels::correlation(AXES[axis].to_owned(), note, half, lines.collect())
     });
     Chart {

@@ -1,7 +1,7 @@
 //! Charts of a multi-position test.
 
 use gyrocal::generated::catalogue::OUTPUTS;
-use gyrocal_document::{Band, Chart, Line, LineKind, Panel, Tint};
+use gyrocal_document::{Band, Chart, Line, LineKind, Panel, TimeAxis, Tint};
 use gyrocal_instruments::multi_position::{Finding, GyroReport, MultiPositionReport, PreparedTest};
 use gyrocal_statistics::format;
 
@@ -50,6 +50,7 @@ pub(super) fn residuals(prepared: &PreparedTest, report: &MultiPositionReport) -
         }
     });
     let [before, after] = report.residual_rms_deg_per_h();
+    let time = TimeAxis::of(&prepared.positions.time_s);
     Chart {
         title: match found {
             true => format!(
@@ -58,8 +59,9 @@ pub(super) fn residuals(prepared: &PreparedTest, report: &MultiPositionReport) -
             false => format!("{before:.0} deg/h rms with the nominal law"),
         },
         caption: format!(
-            "One point is one static stop; from the first to the last {} h.",
-            format::short(hours(&prepared.positions.time_s), 3)
+            "One point is one static stop; from the first to the last {} {}.",
+            format::short(time.values.last().copied().unwrap_or(0.0), 3),
+            time.unit
         ),
         abscissa: "stop".to_owned(),
         quantity: "residual".to_owned(),
@@ -69,12 +71,6 @@ pub(super) fn residuals(prepared: &PreparedTest, report: &MultiPositionReport) -
         height_px: 230,
         ..Chart::default()
     }
-}
-
-/// Length of a series, h.
-fn hours(time_s: &[f64]) -> f64 {
-    let ends = time_s.first().zip(time_s.last());
-    ends.map_or(0.0, |(first, last)| (last - first) / 3600.0)
 }
 
 pub(super) fn contributions(prepared: &PreparedTest, report: &MultiPositionReport) -> Chart {
