@@ -63,3 +63,57 @@ fn picture(item: Item, section: &str) -> Option<Box<dyn Picture>> {
         _ => return None,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use gyrocal_report::page::{Bar, BarGroup, Bars, Origin, Section, Summary, Tint, Tone};
+
+    #[test]
+    fn pictures_have_names_of_sections_titles_and_their_source() {
+        let bars = |title: &str| {
+            let bar = Bar {
+                label: "gyro_y.g_z".to_owned(),
+                value: 3.0,
+                tint: Tint::Extended,
+                note: String::new(),
+            };
+            Item::Bars(Bars {
+                title: title.to_owned(),
+                quantity: "statistic".to_owned(),
+                threshold: None,
+                groups: vec![BarGroup {
+                    label: "found".to_owned(),
+                    bars: vec![bar],
+                }],
+                omitted: String::new(),
+            })
+        };
+        let drawn = pictures(Part {
+            name: "record.csv".to_owned(),
+            size: String::new(),
+            summary: Summary {
+                tone: Tone::Found,
+                headline: "Fault found".to_owned(),
+                sentence: String::new(),
+                cards: Vec::new(),
+            },
+            sections: vec![Section {
+                id: "ranking".to_owned(),
+                title: "Ranking of effects".to_owned(),
+                lead: String::new(),
+                items: vec![bars(""), Item::Text("words".to_owned()), bars("Second")],
+            }],
+            origin: Origin::default(),
+        });
+        let names: Vec<&str> = drawn.iter().map(|(name, _)| name.as_str()).collect();
+        assert_eq!(names, ["ranking", "ranking-2"]);
+        for ((_, picture), title) in drawn.iter().zip(["Ranking of effects", "Second"]) {
+            let svg = picture.to_svg().unwrap();
+            assert!(svg.contains(&format!("<title>{title}</title>")), "{svg}");
+            let source = "Ranking of effects: record.csv. Fault found.";
+            assert!(svg.contains(source), "{svg}");
+            assert!(picture.to_svg_of("another").unwrap().contains("another"));
+        }
+    }
+}
