@@ -68,7 +68,7 @@ pub fn of_result(answer: &Answer) -> Part {
 #[must_use]
 pub fn page(parts: Vec<Part>) -> Page {
     let title = match &*parts {
-        [one] => format!("{}: {}", one.name, one.first.headline()),
+        [one] => format!("{}: {}", one.name, one.first.verdict),
         several => format!("{} records", several.len()),
     };
     Page { title, parts }

@@ -67,7 +67,7 @@ fn picture(item: Item, section: &str) -> Option<Box<dyn Picture>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use gyrocal_report::page::{Bar, BarGroup, Bars, Origin, Section, Summary, Tint, Tone};
+    use gyrocal_document::{Bar, BarGroup, Bars, Origin, Screen, Section, Standing, Tint};
 
     #[test]
     fn pictures_have_names_of_sections_titles_and_their_source() {
@@ -92,17 +92,12 @@ mod tests {
         let drawn = pictures(Part {
             name: "record.csv".to_owned(),
             size: String::new(),
-            summary: Summary {
-                tone: Tone::Found,
-                headline: "Fault found".to_owned(),
-                sentence: String::new(),
-                cards: Vec::new(),
-            },
+            first: Screen::new(Standing::Bad, "FAULT", "gyro_y.g_z"),
             sections: vec![Section {
                 id: "ranking".to_owned(),
                 title: "Ranking of effects".to_owned(),
                 lead: String::new(),
-                items: vec![bars(""), Item::Text("words".to_owned()), bars("Second")],
+                items: vec![bars(""), Item::text("words"), bars("Second")],
             }],
             origin: Origin::default(),
         });
@@ -111,7 +106,7 @@ mod tests {
         for ((_, picture), title) in drawn.iter().zip(["Ranking of effects", "Second"]) {
             let svg = picture.to_svg().unwrap();
             assert!(svg.contains(&format!("<title>{title}</title>")), "{svg}");
-            let source = "Ranking of effects: record.csv. Fault found.";
+            let source = "Ranking of effects: record.csv. FAULT: gyro_y.g_z.";
             assert!(svg.contains(source), "{svg}");
             assert!(picture.to_svg_of("another").unwrap().contains("another"));
         }

@@ -77,7 +77,7 @@ fn a_page_answers_on_its_first_screen_zooms_and_prints() {
     let clean = part("three_days", |_| ());
     let path = written(&folder, "clean.html", vec![clean.clone()]);
     open(&mut browser, &path);
-    first_screen(&mut browser, "No model mismatch");
+    first_screen(&mut browser, "NO FAULT FOUND");
 
     let path = written(&folder, "both.html", vec![clean, hidden]);
     open(&mut browser, &path);
@@ -121,7 +121,7 @@ fn the_page_of_a_plant_answers_on_its_first_screen_and_zooms() {
 }
 
 fn first_screen(browser: &mut Browser, word: &str) {
-    let headline = browser.evaluate("document.querySelector('.verdict h1').textContent");
+    let headline = browser.evaluate("document.querySelector('.verdict').textContent");
     assert!(headline.as_str().unwrap().contains(word), "{headline}");
     let bottom =
         browser.number("document.querySelector('.first-screen').getBoundingClientRect().bottom");

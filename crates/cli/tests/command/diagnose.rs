@@ -247,7 +247,7 @@ fn pictures_are_written() {
     let residual = String::from_utf8(written("residual.svg")).unwrap();
     assert!(residual.contains("for the nominal model") && residual.contains("with gyro_y.g_z"));
     // Each tells what it is of.
-    let source = format!("Open-loop residual: {RECORD}. Fault found: gyro_y.g_z.");
+    let source = format!("Open-loop residual: {RECORD}. FAULT: gyro_y.g_z");
     assert!(residual.contains(&source), "{residual}");
     let text = |name: &str| String::from_utf8(written(name)).unwrap();
     let words = [

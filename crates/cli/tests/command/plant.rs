@@ -125,7 +125,7 @@ fn several_records_have_one_answer_and_a_report() {
     let page = folder.text("r.html");
     let hash = inputs[1]["sha256"].as_str().unwrap();
     for word in [
-        "Model lacks v_rate.x^3",
+        "lacks one effect: v_rate.x^3",
         hash,
         "Open-loop residual",
         "later.csv alone",
