@@ -105,9 +105,9 @@ mod tests {
         assert_eq!(names, ["ranking", "ranking-2"]);
         for ((_, picture), title) in drawn.iter().zip(["Ranking of effects", "Second"]) {
             let svg = picture.to_svg().unwrap();
-            assert!(svg.contains(&format!("<title>{title}</title>")), "{svg}");
+            assert!(svg.contains(&format!("<title>{title}</title>")), "{title}");
             let source = "Ranking of effects: record.csv. FAULT: gyro_y.g_z.";
-            assert!(svg.contains(source), "{svg}");
+            assert!(svg.contains(source), "no `{source}`");
             assert!(picture.to_svg_of("another").unwrap().contains("another"));
         }
     }
