@@ -263,7 +263,9 @@ fn pictures_are_written() {
     for (name, words) in words {
         assert!(text(name).contains(words), "{name}: no `{words}`");
     }
-    // The picture of the README is the one that its command draws.
+    // The picture of the README is the one that its command draws, which tests no filter.
+    folder.succeed(&["diagnose", RECORD, "--bench", BENCH, "--figures", "plain"]);
+    let residual = folder.text("plain/residual.svg");
     let shown = fs::read(repository("docs/pictures/hidden-fault.png")).unwrap();
     assert!(shown.len() < 200_000);
     assert!(
