@@ -27,7 +27,7 @@ fn the_command_of_the_package_gives_the_answer_of_the_library() {
         .unwrap();
     assert!(output.status.success(), "{output:?}");
     let page = std::fs::read_to_string(page).unwrap();
-    assert!(page.contains("Model lacks v_rate.x^3"));
+    assert!(page.contains("lacks one effect: v_rate.x^3"));
     // The command that made it, not that of the platform.
     assert!(page.contains(
         "<span>gyrocal-example-duffing</span> <span>diagnose</span> <span>record.csv</span>"
