@@ -9,5 +9,7 @@ mod columns;
 mod decimate;
 mod render;
 mod strips;
+mod templates;
 
-pub use render::{to_html, words_to_html};
+pub use render::to_html;
+pub use templates::words_to_html;

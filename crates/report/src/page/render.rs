@@ -1,24 +1,17 @@
 //! From a page to HTML.
 
 use gyrocal_record::printable;
-use minijinja::{AutoEscape, Environment, context};
+use minijinja::context;
 use serde_json::{Value, json};
 
 use super::chart;
 use super::columns::Columns;
 use super::decimate::{MOST_ROWS, Row, rows};
 use super::strips;
+use super::templates::{environment, make_printable, of_words, template};
 use crate::error::Error;
 use crate::number::{count, readable_unit};
-use gyrocal_document::{Chart, Item, List, Page, Panel, Part, Section, Standing, Words};
-
-/// The templates, all HTML: minijinja escapes by the name.
-const TEMPLATES: [(&str, &str); 4] = [
-    ("page.html", include_str!("../../assets/page.html")),
-    ("summary.html", include_str!("../../assets/summary.html")),
-    ("command.html", include_str!("../../assets/command.html")),
-    ("items.html", include_str!("../../assets/items.html")),
-];
+use gyrocal_document::{Chart, Item, Page, Panel, Part, Section, Standing};
 
 const STYLES: [&str; 2] = [
     include_str!("../../assets/uplot/uPlot.min.css"),
@@ -59,36 +52,6 @@ pub fn to_html(page: &Page) -> Result<String, Error> {
         .map_err(template)
 }
 
-/// An answer in words as HTML without a style, to be shown inside another page.
-///
-/// # Errors
-/// [`Error::Template`].
-pub fn words_to_html(pieces: &[Words]) -> Result<String, Error> {
-    let environment = environment()?;
-    let items = environment.get_template("items.html").map_err(template)?;
-    let shown = pieces.iter().map(|piece| {
-        let mut item = of_words(piece);
-        make_printable(&mut item);
-        items.render(context! { item => item }).map_err(template)
-    });
-    shown.collect()
-}
-
-fn environment() -> Result<Environment<'static>, Error> {
-    let mut environment = Environment::new();
-    environment.set_auto_escape_callback(|_| AutoEscape::Html);
-    for (name, text) in TEMPLATES {
-        environment.add_template(name, text).map_err(template)?;
-    }
-    Ok(environment)
-}
-
-fn template(reason: minijinja::Error) -> Error {
-    Error::Template {
-        reason: format!("{reason:#}"),
-    }
-}
-
 /// Letter that stands beside the colour of a verdict.
 fn sign(standing: Standing) -> &'static str {
     match standing {
@@ -96,23 +59,6 @@ fn sign(standing: Standing) -> &'static str {
         Standing::Doubtful => "!",
         Standing::Bad => "✕",
         Standing::Neutral => "i",
-    }
-}
-
-fn of_words(words: &Words) -> Value {
-    match words {
-        Words::Paragraph(text) => json!({ "kind": "text", "text": text }),
-        Words::Command(text) => json!({ "kind": "command", "text": text }),
-        Words::Entry(entry) => {
-            let title = format!("{}. {}", entry.number, entry.title);
-            let list = List {
-                title,
-                entries: entry.paragraphs.clone(),
-            };
-            json!({ "kind": "list", "list": list })
-        }
-        Words::List(list) => json!({ "kind": "list", "list": list }),
-        Words::Table(table) => json!({ "kind": "table", "table": table }),
     }
 }
 
@@ -320,20 +266,10 @@ fn axis((quantity, unit): (&str, &str)) -> String {
     }
 }
 
-/// Escapes what a reader would not see in all texts of a value: HTML would drop it or obey it.
-fn make_printable(value: &mut Value) {
-    match value {
-        Value::String(text) => *text = printable(text).into_owned(),
-        Value::Array(values) => values.iter_mut().for_each(make_printable),
-        Value::Object(fields) => fields.values_mut().for_each(make_printable),
-        _ => (),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use gyrocal_document::{Bar, BarGroup, Bars, Line, LineKind, Origin, Screen, Tint};
+    use gyrocal_document::{Bar, BarGroup, Bars, Line, LineKind, List, Origin, Screen, Tint};
 
     /// A text that a page must neither obey nor drop.
     const HOSTILE: &str = "</script><own-tag>\u{202e}\u{7}";
