@@ -111,7 +111,7 @@ def test_reports_of_other_results(results, tmp_path, simulated, diagnosed):
     assert "gyro_y.g_z" in page.read_text()
     planned = gyrocal.plan(simulated.record, simulated.bench, diagnosis=diagnosed, hours=12)
     planned.report(page)
-    assert "Next run" in page.read_text()
+    assert "What the run gives" in page.read_text()
     calibrated = gyrocal.calibrate(simulated.record, simulated.bench)
     calibrated.report(page)
     text = page.read_text()
@@ -119,7 +119,7 @@ def test_reports_of_other_results(results, tmp_path, simulated, diagnosed):
     together = fleet.summarise(results)
     gyrocal.report([calibrated, diagnosed, planned, together], page)
     text = page.read_text()
-    assert all(word in text for word in ("gyro_x.bias", "gyro_y.g_z", "Next run"))
+    assert all(word in text for word in ("gyro_x.bias", "gyro_y.g_z", "What the run gives"))
     for wrong in ([], [1], simulated.record):
         with pytest.raises((gyrocal.InputError, TypeError)):
             gyrocal.report(wrong, page)
