@@ -53,9 +53,13 @@ pub fn all(fleet: &FleetResult) -> Vec<Words> {
 #[must_use]
 pub fn first_screen(fleet: &FleetResult) -> Screen {
     let is_clean = fleet.recurring.is_empty() && fleet.groups.is_empty();
-    let (standing, words) = match is_clean {
-        true => (Standing::Good, "NOTHING BEYOND SINGLE UNITS"),
-        false => (Standing::Bad, "UNITS SHARE CAUSES"),
+    let is_whole = fleet.not_settled == 0 && fleet.problems.is_empty();
+    let (standing, words) = match (fleet.recurring.is_empty(), is_clean) {
+        (false, _) => (Standing::Bad, "UNITS SHARE CAUSES"),
+        (true, false) => (Standing::Bad, "GROUPS OF UNITS DIFFER"),
+        // Records that are left out or not settled may hide what recurs.
+        (true, true) if !is_whole => (Standing::Doubtful, "NOTHING FOUND BEYOND SINGLE UNITS"),
+        (true, true) => (Standing::Good, "NOTHING BEYOND SINGLE UNITS"),
     };
     let mut screen = Screen::new(standing, words, verdict(fleet));
     for cause in &fleet.recurring {

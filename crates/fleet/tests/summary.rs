@@ -2,10 +2,11 @@
 #![cfg(test)]
 
 use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
+use gyrocal_document::Standing;
 use gyrocal_evaluation::inject_into;
 use gyrocal_fleet::{
-    Coefficient, FleetError, FleetOptions, FleetRecord, RecordName, from_bytes, prose, summarise,
-    to_bytes,
+    Coefficient, FleetError, FleetOptions, FleetRecord, FleetResult, RecordName, from_bytes, prose,
+    summarise, to_bytes,
 };
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{Population, Scenario, simulate};
@@ -111,6 +112,15 @@ fn the_order_of_records_changes_nothing() {
     assert_eq!(summarise(&records, &options).unwrap(), first);
     assert_eq!(first.found_in_units[0].units, ["a", "b", "c"]);
     let words = format!("{:?}", prose::all(&first));
+    // What is not settled or left out makes the first screen less sure.
+    let screen = prose::first_screen(&first);
+    assert_eq!(screen.standing, Standing::Good, "{screen:?}");
+    let open = FleetResult {
+        not_settled: 1,
+        ..first.clone()
+    };
+    let screen = prose::first_screen(&open);
+    assert_eq!(screen.standing, Standing::Doubtful, "{screen:?}");
     assert!(
         words.contains("3 units with 3 records") && words.contains("gyro_x.bias"),
         "{words}"
