@@ -1,9 +1,10 @@
 //! The answer of a diagnosis of a plant in sentences.
 
+use crate::diagnosis::likelihood;
+use crate::format::tested;
 use gyrocal_answer::{
-    Alternative, AlternativeKind, Answer, Finding, Gain, NextRun, NullDirection, NullPart,
-    OutputError, OutputTest, Parameter, RecordResult, RecordSummary, Subject, UnmodelledTerm,
-    Verdict,
+    AlternativeKind, Answer, Finding, Gain, NextRun, NullDirection, NullPart, OutputError,
+    OutputTest, Parameter, RecordResult, RecordSummary, Subject, UnmodelledTerm, Verdict,
 };
 use gyrocal_document::{Screen, Standing};
 use gyrocal_statistics::format::{estimate, p_value, significant};
@@ -140,7 +141,7 @@ pub fn finding(answer: &Answer, found: &Finding) -> String {
         found.name,
         sizes.join(", "),
         significant(found.z, 3),
-        probability(found),
+        tested(found.p_value),
     );
     let rivals = found.of_kind(AlternativeKind::NotExcluded);
     let rivals: Vec<String> = rivals
@@ -166,22 +167,6 @@ pub fn finding(answer: &Answer, found: &Finding) -> String {
         }
     };
     text
-}
-
-/// How likely an alternative is beside the named effect.
-#[must_use]
-pub fn likelihood(other: &Alternative) -> String {
-    other.log_likelihood_deficit.map_or_else(
-        || "not searched".to_owned(),
-        |nats| format!("{nats:.1} nats less likely"),
-    )
-}
-
-/// The p-value of a finding.
-#[must_use]
-pub fn probability(found: &Finding) -> String {
-    let none = || "p not computed for the final model".to_owned();
-    found.p_value.map_or_else(none, p_value)
 }
 
 /// A size or an onset: name, value, standard deviation and unit.
