@@ -14,6 +14,13 @@ pub const NIS_FALSE_ALARM: f64 = 1e-3;
 /// model error among the figures, gives 190.
 const GROSS: f64 = 1000.0;
 
+/// Whether a mean NIS is so large that no effect which a model lacks explains it: the inputs are wrong, and the
+/// estimates mean nothing.
+#[must_use]
+pub fn is_gross(nis_mean: f64) -> bool {
+    nis_mean > GROSS
+}
+
 /// Sums of normalised innovations squared (NIS) and of their log-likelihoods: the data of the
 /// consistency test.
 ///
@@ -92,7 +99,7 @@ impl FitStatistics {
     /// inputs are wrong, and the estimates mean nothing.
     #[must_use]
     pub fn is_gross(&self) -> bool {
-        self.nis_mean() > GROSS
+        is_gross(self.nis_mean())
     }
 
     /// The result of the consistency test in a few sentences.

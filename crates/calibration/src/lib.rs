@@ -146,7 +146,7 @@ pub use check::check_record;
 pub use coefficients::BIASES;
 pub use cramer_rao::cramer_rao_bound;
 pub use error::CalibrationError;
-pub use fit::{Consistency, FitStatistics, NIS_FALSE_ALARM};
+pub use fit::{Consistency, FitStatistics, NIS_FALSE_ALARM, is_gross};
 pub use fitted_platform::{
     Estimates, Expectation, FittedPlatform, GYRO_NOISE_PRIOR_SIGMA, NoiseModel, RecordSizes,
     SiteBias, WalkEnd, joined_record,

@@ -18,7 +18,7 @@ use gyrocal_calibration::{
 use gyrocal_diagnosis::{
     CalibrationVerdict, DiagnoseOptions, calibration_verdict, fit_effects, screen_record,
 };
-use gyrocal_pages::of_calibration;
+use gyrocal_pages::{calibration_screen, of_calibration};
 use gyrocal_record::{
     CalibrationMethod, EffectTest, FittedEffects, InputRole, Outputs, SetupProblem, printable_path,
 };
@@ -234,14 +234,15 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Reply, Failure> {
         gyro_axes,
     };
     let next = screen::diagnose(&found, arguments);
-    let mut answer = Reply::of(screen::first(&found, next), prose::summary(&found));
+    let first = screen::first(&found, next);
+    let mut answer = Reply::of(first.clone(), prose::summary(&found));
     let mut outputs = Outputs::new();
     let asked = [&arguments.json, &arguments.coefficients];
     if asked.into_iter().any(Option::is_some) || arguments.views.are_asked() {
         let report = json::report(&found, &inputs)?;
         if arguments.views.are_asked() {
             let record = &arguments.records[0];
-            let part = over_time::part(record, &report, &found, &options)?;
+            let part = over_time::part(record, (&report, first), &found, &options)?;
             let views = &arguments.views;
             views.stage(record, part, &mut outputs, &mut answer)?;
         }
@@ -284,7 +285,10 @@ fn stopped(
     let mut outputs = Outputs::new();
     // Nothing was fitted, which leaves nothing to draw.
     if let Some(path) = arguments.views.report() {
-        let part = page::part(&arguments.records[0], of_calibration(&report, &[]))?;
+        let part = page::part(
+            &arguments.records[0],
+            of_calibration(&report, &[], calibration_screen(&report)),
+        )?;
         page::stage(path, vec![part], &mut outputs)?;
     }
     if let Some(path) = &arguments.json {

@@ -13,7 +13,10 @@ use gyrocal_diagnosis::{
     DiagnoseOptions, DiagnosisError, Gate, RecordUncertainty, UncertaintyResult, diagnose_gated,
     record_uncertainty,
 };
-use gyrocal_pages::{Part, of_budget, of_calibration, of_diagnosis, of_plan, of_result, of_spread};
+use gyrocal_pages::{
+    Part, calibration_screen, of_budget, of_calibration, of_diagnosis, of_plan, of_result,
+    of_spread,
+};
 use gyrocal_record::{
     Bench, CalibrationReport, InputRole, Outputs, RecordFile, SourceText, printable_path,
 };
@@ -188,7 +191,10 @@ fn of_file(path: &Path) -> Result<Part, Failure> {
     }
     if has("verdict_text") {
         let report: CalibrationReport = read(path, &source, gyrocal_record::SCHEMA_VERSION)?;
-        return page::part(path, of_calibration(&report, &[]));
+        return page::part(
+            path,
+            of_calibration(&report, &[], calibration_screen(&report)),
+        );
     }
     Err(Failure::Work(miette!(
         help =

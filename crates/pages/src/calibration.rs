@@ -1,6 +1,6 @@
 //! The page of a calibration.
 
-use gyrocal_calibration::FittedPlatform;
+use gyrocal_calibration::{FittedPlatform, is_gross};
 use gyrocal_document::{
     Cell, Column, EstimateRow, Estimates, Item, List, Part, Screen, Section, Standing, Table, Tint,
     ValueWithSigma,
@@ -29,13 +29,14 @@ pub struct CalibratedRecord<'a, 'b> {
     pub fit: &'a FittedPlatform<'b>,
 }
 
-/// The page of a calibration. Charts over time are of the records that are given.
+/// The page of a calibration with its first screen. Charts over time are of the records that are given.
 ///
 /// # Errors
 /// [`PageError`] where a simulation fails.
 pub fn of_calibration(
     report: &CalibrationReport,
     records: &[CalibratedRecord<'_, '_>],
+    first: Screen,
 ) -> Result<Part, PageError> {
     let mut sections = Vec::new();
     for (place, one) in records.iter().enumerate() {
@@ -67,15 +68,17 @@ pub fn of_calibration(
             ),
         },
         size: format!("{} rows used", report.rows),
-        first: first_screen(report),
+        first,
         sections,
         origin: origin(&report.manifest),
     })
 }
 
-/// The first screen of a written calibration.
-fn first_screen(report: &CalibrationReport) -> Screen {
+/// The first screen of a written calibration: what it tells without the records.
+#[must_use]
+pub fn calibration_screen(report: &CalibrationReport) -> Screen {
     let (standing, verdict) = match report.verdict {
+        _ if report.nis_mean.is_some_and(is_gross) => (Standing::Bad, "NOT USABLE"),
         FitVerdict::Consistent => (Standing::Good, "CALIBRATED"),
         FitVerdict::EffectsFound => (Standing::Bad, "FAULT"),
         FitVerdict::TooLarge | FitVerdict::TooSmall | FitVerdict::NoiseDiffers => {
@@ -94,6 +97,10 @@ fn first_screen(report: &CalibrationReport) -> Screen {
     let shown = report.effects.iter().filter(|test| test.significant);
     let effects: Vec<&str> = shown.filter_map(|test| test.effect.as_deref()).collect();
     screen.fact("first sign", listed(&effects));
+    if let (Some(mean), Some([low, high])) = (report.nis_mean, report.nis_band) {
+        let words = format!("mean NIS {mean:.3} (expected {low:.3} to {high:.3})");
+        screen.fact("how sure", words);
+    }
     let open = report.coefficients.iter().filter(|one| !one.determined);
     let open: Vec<&str> = open.map(|one| &*one.name).collect();
     screen.fact("not determined", listed(&open));

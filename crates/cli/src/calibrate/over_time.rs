@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use gyrocal_calibration::{FittedPlatform, NoiseModel, Options};
+use gyrocal_document::Screen;
 use gyrocal_pages::{CalibratedRecord, Part, of_calibration};
 use gyrocal_record::CalibrationReport;
 
@@ -13,7 +14,7 @@ use crate::{Failure, page};
 /// over time.
 pub(super) fn part(
     path: &Path,
-    report: &CalibrationReport,
+    (report, first): (&CalibrationReport, Screen),
     found: &CalibrationRun,
     options: &Options,
 ) -> Result<Part, Failure> {
@@ -38,5 +39,5 @@ pub(super) fn part(
         fit,
     });
     let records: Vec<_> = records.collect();
-    page::part(path, of_calibration(report, &records))
+    page::part(path, of_calibration(report, &records, first))
 }

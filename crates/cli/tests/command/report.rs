@@ -40,6 +40,38 @@ fn assert_page(folder: &Folder, name: &str, words: &[&str]) {
     }
 }
 
+/// Every fact that the terminal shows stands in a card of the first screen of the page.
+fn assert_same_screen(folder: &Folder, name: &str, said: &str) {
+    let html = folder.text(name).replace("&#x2f;", "/");
+    let (first, _) = html.split_once("</header>").unwrap();
+    let (head, facts) = said.split_once('\n').unwrap();
+    let (verdict, what) = head.split_once("  ").unwrap();
+    for words in [format!("<h1>{verdict}</h1>"), format!("<p>{what}</p>")] {
+        assert!(first.contains(&words), "{name} lacks {words}");
+    }
+    let mut seen = 0;
+    for line in facts.lines().take_while(|line| !line.is_empty()) {
+        let Some((label, words)) = line.split_once("  ") else {
+            continue;
+        };
+        if first.contains(&format!("<h2>{label}</h2>\n<p>{}</p>", words.trim_start())) {
+            seen += 1;
+        } else {
+            // Tables and commands are laid out otherwise.
+            let is_fact = [
+                "how large",
+                "how sure",
+                "may also be",
+                "left over",
+                "noise",
+                "record",
+            ];
+            assert!(!is_fact.contains(&label), "{name} lacks {line}");
+        }
+    }
+    assert!(seen >= 3, "{seen} facts of {said}");
+}
+
 #[test]
 fn reports_of_a_diagnosis_a_result_and_a_plan() {
     let folder = folder();
@@ -47,6 +79,7 @@ fn reports_of_a_diagnosis_a_result_and_a_plan() {
         "diagnose", RECORD, "--bench", BENCH, "--report", "r.html", "--json", "d.json",
     ]);
     assert!(said.contains("r.html: the report"), "{said}");
+    assert_same_screen(&folder, "r.html", &said);
     let words = [
         "<h1>FAULT</h1>",
         "6f95ed38b7e3fa6c70e6801692d87e3f9055ab2afb8feafe2898256599469b0b",
@@ -90,7 +123,7 @@ fn reports_of_a_diagnosis_a_result_and_a_plan() {
 #[test]
 fn reports_of_a_calibration() {
     let folder = folder();
-    folder.succeed(&[
+    let said = folder.succeed(&[
         "calibrate",
         RECORD,
         "--bench",
@@ -111,8 +144,20 @@ fn reports_of_a_calibration() {
         "hidden_fault.bench.toml",
     ];
     assert_page(&folder, "c.html", &words);
+    assert_same_screen(&folder, "c.html", &said);
+    // A written result has the verdict of the command, also where its coefficients mean nothing.
     folder.succeed(&["report", "c.json"]);
-    assert_page(&folder, "report.html", &["Drift coefficients"]);
+    assert_page(
+        &folder,
+        "report.html",
+        &["Drift coefficients", "<h1>FAULT</h1>"],
+    );
+    let written = folder.text("c.json");
+    let (before, rest) = written.split_once("\"nis_mean\": ").unwrap();
+    let (_, after) = rest.split_once(',').unwrap();
+    folder.put("c.json", format!("{before}\"nis_mean\": 5000.0,{after}"));
+    folder.succeed(&["report", "c.json", "--out", "gross.html"]);
+    assert_page(&folder, "gross.html", &["<h1>NOT USABLE</h1>"]);
 }
 
 #[test]

@@ -268,8 +268,12 @@ fn axis((quantity, unit): (&str, &str)) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::super::templates::words_to_html;
     use super::*;
-    use gyrocal_document::{Bar, BarGroup, Bars, Line, LineKind, List, Origin, Screen, Tint};
+    use gyrocal_document::{
+        Bar, BarGroup, Bars, Column, Entry, Line, LineKind, List, Origin, Screen, Table, Tint,
+        Words,
+    };
 
     /// A text that a page must neither obey nor drop.
     const HOSTILE: &str = "</script><own-tag>\u{202e}\u{7}";
@@ -296,6 +300,28 @@ mod tests {
             }],
             ..Chart::default()
         }
+    }
+
+    #[test]
+    fn words_alone_are_escaped_too() {
+        let own = || HOSTILE.to_owned();
+        let pieces = [
+            Words::Paragraph(own()),
+            Words::Command(own()),
+            Words::Entry(Entry {
+                number: 1,
+                title: own(),
+                paragraphs: vec![own()],
+            }),
+            Words::Table(Table::new(HOSTILE, vec![Column::words(HOSTILE)], [[own()]])),
+        ];
+        let html = words_to_html(&pieces).unwrap();
+        assert!(
+            !html.contains("own-tag>") && !html.contains('\u{202e}'),
+            "{html}"
+        );
+        // Command, paragraph, title and paragraph of the entry, title, head and cell of the table.
+        assert_eq!(html.matches("own-tag&gt;").count(), 7, "{html}");
     }
 
     #[test]
