@@ -45,7 +45,7 @@ pub(super) fn first(
             counted(prepared.stops.len(), "static stop")
         ),
     );
-    if arguments.views.figures().is_none() && matches!(report, Report::Many(_)) {
+    if !arguments.views.are_asked() && matches!(report, Report::Many(_)) {
         screen.then(format!("{} --figures figures", command_line()), "pictures");
     }
     screen
