@@ -233,17 +233,15 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Reply, Failure> {
         measurements,
         gyro_axes,
     };
-    let next = screen::diagnose(&found, arguments);
-    let first = screen::first(&found, next);
+    let first = screen::first(&found, screen::diagnose(&found, arguments));
     let mut answer = Reply::of(first.clone(), prose::summary(&found));
     let mut outputs = Outputs::new();
     let asked = [&arguments.json, &arguments.coefficients];
     if asked.into_iter().any(Option::is_some) || arguments.views.are_asked() {
         let report = json::report(&found, &inputs)?;
         if arguments.views.are_asked() {
-            let record = &arguments.records[0];
+            let (record, views) = (&arguments.records[0], &arguments.views);
             let part = over_time::part(record, (&report, first), &found, &options)?;
-            let views = &arguments.views;
             views.stage(record, part, &mut outputs, &mut answer)?;
         }
         if let Some(path) = &arguments.json {
