@@ -58,6 +58,12 @@ pub fn of_calibration(
             runs,
         ));
     }
+    sections.push(section(
+        "words",
+        "In words",
+        "The verdict with the tests that it rests on.",
+        vec![Item::text(&*report.verdict_text)],
+    ));
     Ok(Part {
         name: match report.runs.len() {
             0 | 1 => file_name(&report.manifest, 0, "record"),

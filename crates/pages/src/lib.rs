@@ -38,6 +38,7 @@ mod plant;
 mod ranked;
 mod tumble;
 mod uncertainty;
+mod unlisted;
 mod words;
 
 use gyrocal_answer::{Answer, Subject};

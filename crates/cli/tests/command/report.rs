@@ -93,6 +93,10 @@ fn reports_of_a_diagnosis_a_result_and_a_plan() {
         "latitude +1.000 arcsec",
     ];
     assert_page(&folder, "r.html", &words);
+    let result: serde_json::Value = serde_json::from_str(&folder.text("d.json")).unwrap();
+    let none = result["findings"][0]["none_of_these"].as_f64().unwrap();
+    let unlisted = format!("gyro_y.g_z: probability {:.1} %", 100.0 * none);
+    assert_page(&folder, "r.html", &[&unlisted]);
 
     folder.succeed(&[
         "plan",
@@ -144,6 +148,8 @@ fn reports_of_a_calibration() {
         "hidden_fault.bench.toml",
     ];
     assert_page(&folder, "c.html", &words);
+    // The verdict in a sentence, with the band of its test.
+    assert_page(&folder, "c.html", &["99.9 % band"]);
     assert_same_screen(&folder, "c.html", &said);
     // A written result has the verdict of the command, also where its coefficients mean nothing.
     folder.succeed(&["report", "c.json"]);

@@ -5,6 +5,7 @@ use gyrocal_document::{Cell, Column, Item, List, Section, Table};
 use gyrocal_statistics::format;
 
 use super::section;
+use crate::unlisted::unlisted;
 use crate::words::listed;
 
 pub(super) fn cannot_tell(result: &Answer) -> Section {
@@ -25,6 +26,7 @@ pub(super) fn cannot_tell(result: &Answer) -> Section {
         };
         items.push(Item::text(words.to_owned()));
     }
+    items.extend(unlisted(result));
     items.extend(undetected(result).map(Item::from));
     section(
         "limits",

@@ -4,6 +4,7 @@ use gyrocal_answer::Answer;
 use gyrocal_document::{Cell, Column, Item, List, Section, Table};
 
 use crate::diagnosis::section;
+use crate::unlisted::unlisted;
 
 pub(super) fn cannot_tell(answer: &Answer) -> Section {
     let mut items = Vec::new();
@@ -59,6 +60,7 @@ pub(super) fn cannot_tell(answer: &Answer) -> Section {
         };
         items.push(Item::text(all.to_owned()));
     }
+    items.extend(unlisted(answer));
     section(
         "cannot-tell",
         "What cannot be told apart",
