@@ -9,7 +9,7 @@
 
 use core::ops::Range;
 
-use gyrocal_record::{Bench, Record};
+use gyrocal_record::{AveragedReport, Bench, Record};
 use gyrocal_statistics::{mean, median_interval_s};
 use nalgebra::{SMatrix, SVector};
 
@@ -40,10 +40,6 @@ const ENOUGH: f64 = 0.5;
 /// Tolerance of the interval boundaries for sampling times, as a share of an interval.
 const ON_BOUNDARY: f64 = 1e-6;
 
-/// Share of the variance of a mean from which on [`attitude_walk_share`] matters; a smaller one does
-/// not change the consistency test of a record of some days.
-pub const SIGNIFICANT_WALK_SHARE: f64 = 0.05;
-
 /// A record of averages.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AveragedRecord {
@@ -69,6 +65,18 @@ impl AveragedRecord {
         Bench {
             accel_noise_g: bench.accel_noise_g * self.noise_ratio,
             ..bench.clone()
+        }
+    }
+
+    /// The averaging over these intervals as results tell it; `bench` declares the noise of a mean.
+    #[must_use]
+    pub fn report(&self, bench: &Bench, interval_s: f64) -> AveragedReport {
+        AveragedReport {
+            interval_s,
+            means: self.means,
+            left_out: self.left_out,
+            noise_ratio: self.noise_ratio,
+            walk_share: attitude_walk_share(bench, interval_s),
         }
     }
 }

@@ -4,7 +4,7 @@ use gyrocal::estimation::Manifold;
 use gyrocal::estimation::batch::Linearisation;
 use gyrocal::trajectory::{Orientation, angles_rad, platform_c_enu};
 use gyrocal::{Chart, Drift};
-use gyrocal_record::Bench;
+use gyrocal_record::{Bench, NoiseEstimate};
 
 use crate::coefficients::PARAMETERS;
 use crate::error::CalibrationError;
@@ -12,7 +12,7 @@ use crate::fit::FitStatistics;
 use crate::gyro_axes::GyroAxes;
 use crate::initial_guess::{Guessed, best_fit, initial_guess};
 use crate::layout::{Layout, SiteQuantity};
-use crate::noise::{self, NoiseEstimate};
+use crate::noise;
 use crate::observability::unobservable;
 use crate::options::Options;
 use crate::problem::Problem;

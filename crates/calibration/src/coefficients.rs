@@ -7,7 +7,3 @@ pub(crate) const PARAMETERS: usize = gyrocal::Platform::PARAMETERS;
 
 /// Indices of the constant drifts of gyros x, y, z among the coefficients.
 pub const BIASES: [usize; 3] = [index::GYRO_X_BIAS, index::GYRO_Y_BIAS, index::GYRO_Z_BIAS];
-
-/// Indices of the mass unbalances D_I of gyros x, y, z among the coefficients.
-pub(crate) const MASS_UNBALANCES: [usize; 3] =
-    [index::GYRO_X_G_X, index::GYRO_Y_G_Y, index::GYRO_Z_G_Z];

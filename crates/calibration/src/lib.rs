@@ -137,7 +137,7 @@ mod unit_start;
 mod variances;
 mod work;
 
-pub use averaging::{AveragedRecord, SIGNIFICANT_WALK_SHARE, attitude_walk_share, average_record};
+pub use averaging::{AveragedRecord, attitude_walk_share, average_record};
 pub use budget::{
     CoefficientBudget, Contribution, ModelEstimate, UncertaintyBudget, calibrate_with_budget,
 };
@@ -153,15 +153,14 @@ pub use fitted_platform::{
 };
 pub use gross_errors::gross_errors;
 pub use gyro_axes::GyroAxes;
+pub use gyrocal_record::{NoiseDifference, NoiseEstimate, NoiseRatio};
 pub use layout::SiteQuantity;
-pub use noise::{NoiseDifference, NoiseEstimate, NoiseRatio, is_gyro_noise_implausible};
+pub use noise::is_gyro_noise_implausible;
 pub use observability::{DETERMINED, UnobservableCombination};
 pub use options::{Method, Options};
 pub use planned_run::{PlannedRun, PredictedInformation};
 pub use platform::{PLATFORM, rows};
-pub use result::{
-    AzimuthSearch, Bias, Calibration, CoefficientEstimate, ConsiderSensitivity, RunResult,
-};
+pub use result::{AzimuthSearch, Calibration, CoefficientEstimate, ConsiderSensitivity, RunResult};
 pub use run::Run;
 pub use same_rows::{SharedRows, shared_rows, times_overlap};
 pub use settings::{declared_attitude, filter_settings};

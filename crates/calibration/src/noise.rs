@@ -2,7 +2,7 @@
 
 use gyrocal::estimation::EstimationError;
 use gyrocal::estimation::batch::NoiseScore;
-use gyrocal_record::Bench;
+use gyrocal_record::{Bench, NoiseEstimate, NoiseRatio};
 use gyrocal_statistics::NORMAL_97_5;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
@@ -13,59 +13,10 @@ const MAX_STEPS: usize = 12;
 /// Largest step in the logarithm of a variance.
 const LARGEST_STEP: f64 = 2.0;
 
-/// Largest ratio of the ends of an interval of an observable noise.
-const OBSERVABLE_FACTOR: f64 = 100.0;
-
 /// White noise of a gyro, held over one minute, below which a bench description is implausible: it
 /// moves a platform by 1e-9 rad in a day, a ten-thousandth of the resolution of one sample of a good
 /// accelerometer (1e-5 g).
 const LEAST_GYRO_DEG_PER_H: f64 = 1e-7;
-
-/// Ratio of an estimated standard deviation to the declared one.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct NoiseRatio {
-    /// The estimate.
-    pub ratio: f64,
-    /// Its 95 % interval.
-    pub interval: [f64; 2],
-}
-
-/// Difference of a noise from the declared one.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum NoiseDifference {
-    /// The 95 % interval of the ratio lies above 1.
-    Larger,
-    /// The 95 % interval of the ratio lies below 1.
-    Smaller,
-}
-
-impl NoiseRatio {
-    /// True if the record determines the noise: the ends of its interval are within a factor of 100.
-    #[must_use]
-    pub fn is_observable(&self) -> bool {
-        let [low, high] = self.interval;
-        high <= OBSERVABLE_FACTOR * low
-    }
-
-    /// Significant difference from the declared noise, if the 95 % interval excludes 1.
-    #[must_use]
-    pub fn difference(&self) -> Option<NoiseDifference> {
-        match self.interval {
-            [low, _] if low > 1.0 => Some(NoiseDifference::Larger),
-            [_, high] if high < 1.0 => Some(NoiseDifference::Smaller),
-            _ => None,
-        }
-    }
-}
-
-/// Noise of a run's instruments relative to the declared noise.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct NoiseEstimate {
-    /// Accelerometers x, y, z.
-    pub accel: [NoiseRatio; 3],
-    /// Gyros x, y, z.
-    pub gyro: [NoiseRatio; 3],
-}
 
 /// True if a bench description declares a gyro noise so small that a fit may fail to converge because
 /// of it.

@@ -2,11 +2,11 @@
 
 use gyrocal::Drift;
 use gyrocal::generated::platform::DRIFT;
+use gyrocal_record::NoiseEstimate;
 
-use crate::coefficients::{MASS_UNBALANCES, PARAMETERS};
+use crate::coefficients::PARAMETERS;
 use crate::fit::FitStatistics;
 use crate::layout::SiteQuantity;
-use crate::noise::NoiseEstimate;
 use crate::observability::{DETERMINED, UnobservableCombination};
 
 /// Drift coefficients estimated from records, with their covariance.
@@ -97,31 +97,6 @@ impl ConsiderSensitivity {
         self.declared_sigma
             .unwrap_or_else(|| self.quantity.reference_error())
     }
-
-    /// Bias of each coefficient by [`Self::assumed_error`], in the unit of the coefficient.
-    #[must_use]
-    pub fn biases(&self) -> [f64; PARAMETERS] {
-        self.bias_per_unit.map(|bias| bias * self.assumed_error())
-    }
-
-    /// Size of the bias of the mean of the three D_I by [`Self::assumed_error`], deg/h/g.
-    #[must_use]
-    pub fn mean_g_bias_deg_per_h_per_g(&self) -> f64 {
-        let biases = self.biases();
-        let of_g = MASS_UNBALANCES.map(|index| biases[index]);
-        (of_g.iter().sum::<f64>() / 3.0).abs()
-    }
-}
-
-/// Bias of a coefficient by an error of a considered parameter.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bias {
-    /// Index of the coefficient.
-    pub coefficient: usize,
-    /// The bias, in the unit of the coefficient.
-    pub bias: f64,
-    /// The bias in standard deviations of the estimate.
-    pub in_sigmas: f64,
 }
 
 /// One estimated coefficient with its name and unit.
@@ -148,30 +123,6 @@ impl Calibration {
     pub fn site_sensitivity(&self, quantity: SiteQuantity) -> Option<&ConsiderSensitivity> {
         let mut sensitivities = self.site_sensitivities.iter();
         sensitivities.find(|sensitivity| sensitivity.quantity == quantity)
-    }
-
-    /// Biases of the coefficients by the assumed error of a considered parameter.
-    #[must_use]
-    pub fn biases(&self, sensitivity: &ConsiderSensitivity) -> [Bias; PARAMETERS] {
-        let biases = sensitivity.biases();
-        core::array::from_fn(|coefficient| Bias {
-            coefficient,
-            bias: biases[coefficient],
-            in_sigmas: biases[coefficient] / self.covariance[coefficient][coefficient].sqrt(),
-        })
-    }
-
-    /// The bias that is largest in standard deviations of its coefficient.
-    #[must_use]
-    pub fn largest_bias(&self, sensitivity: &ConsiderSensitivity) -> Bias {
-        let [first, others @ ..] = self.biases(sensitivity);
-        others.into_iter().fold(first, |largest, bias| {
-            if bias.in_sigmas.abs() >= largest.in_sigmas.abs() {
-                bias
-            } else {
-                largest
-            }
-        })
     }
 
     /// True if the turn-ons of the runs differ, so that each has its own constant drifts.

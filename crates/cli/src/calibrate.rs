@@ -4,9 +4,6 @@ mod failed;
 mod inputs;
 mod json;
 mod over_time;
-mod prose;
-mod screen;
-mod tables;
 
 use std::path::{Path, PathBuf};
 
@@ -16,21 +13,22 @@ use gyrocal_calibration::{
     Calibration, CalibrationError, GyroAxes, Options, Run, calibrate_runs, calibrate_strapdown,
 };
 use gyrocal_diagnosis::{
-    CalibrationVerdict, DiagnoseOptions, calibration_verdict, fit_effects, screen_record,
+    CalibrationVerdict, DiagnoseOptions, calibration_verdict, diagnose_calibrated, fit_effects,
 };
-use gyrocal_pages::{calibration_screen, of_calibration};
+use gyrocal_document::Words;
+use gyrocal_pages::of_calibration;
 use gyrocal_record::{
-    CalibrationMethod, EffectTest, FittedEffects, InputRole, Outputs, SetupProblem, printable_path,
+    CalibrationMethod, EffectTest, FittedEffects, InputRole, Outputs, printable_path,
 };
 use gyrocal_setup::PlatformKind;
-use gyrocal_words::is_correlation;
+use gyrocal_words::{calibration, calibration_screen, calibration_tables};
 use miette::miette;
 
 use crate::numbers::positive;
 use crate::outputs;
 use crate::page::{self, Views};
 use crate::progress::Progress;
-use crate::{Failure, Reply, exit, gyro_axes, records};
+use crate::{Failure, Reply, exit, gyro_axes, records, text_of};
 pub use failed::NotCalibrated;
 use failed::WrongSetup;
 use inputs::Measurement;
@@ -215,48 +213,46 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Reply, Failure> {
     };
     let names = arguments.records.iter().map(|path| printable_path(path));
     let names: Vec<String> = names.collect();
-    let calibration = calibrate(&runs, &gyro_axes, &options, &mut progress).map_err(|source| {
+    let fitted = calibrated(&runs, &gyro_axes, &options, &mut progress).map_err(|source| {
         let method = arguments.method();
         NotCalibrated::new(&names, &runs, method, arguments.factorised, source)
     })?;
-    progress.stage("test for effects", FITTED);
-    tracing::info!(fit = ?calibration.fit, iterations = calibration.iterations, "calibrated");
+    progress.stage("diagnosis", FITTED);
+    tracing::info!(fit = ?fitted.fit, iterations = fitted.iterations, "calibrated");
     let effects = effects(&measurements, &gyro_axes);
     drop(progress);
     let found = CalibrationRun {
         method: arguments.method(),
         first_run_sigmas: first_run_sigmas(&runs, &gyro_axes, &options),
-        verdict: calibration_verdict(&calibration.fit, &names, &effects),
+        verdict: calibration_verdict(&fitted.fit, &names, &effects),
         effects,
         with_effects,
-        calibration,
+        calibration: fitted,
         measurements,
         gyro_axes,
     };
-    let first = screen::first(&found, screen::diagnose(&found, arguments));
-    let mut answer = Reply::of(first.clone(), prose::summary(&found));
+    let report = json::report(&found, &inputs)?;
+    let tables = calibration_tables(&report).into_iter().map(Words::Table);
+    let words: Vec<Words> = calibration(&report).into_iter().chain(tables).collect();
+    let mut answer = Reply::of(calibration_screen(&report), text_of(&words));
     let mut outputs = Outputs::new();
-    let asked = [&arguments.json, &arguments.coefficients];
-    if asked.into_iter().any(Option::is_some) || arguments.views.are_asked() {
-        let report = json::report(&found, &inputs)?;
-        if arguments.views.are_asked() {
-            let (record, views) = (&arguments.records[0], &arguments.views);
-            let part = over_time::part(record, (&report, first), &found, &options)?;
-            views.stage(record, part, &mut outputs, &mut answer)?;
-        }
-        if let Some(path) = &arguments.json {
-            outputs.stage_json(path, &report)?;
-        }
-        let path = arguments.coefficients.as_deref();
-        let table = || report.coefficient_table();
-        records::stage(path, table, "the coefficients", &mut outputs, &mut answer)?;
+    if arguments.views.are_asked() {
+        let (record, views) = (&arguments.records[0], &arguments.views);
+        let part = over_time::part(record, &report, &found, &options)?;
+        views.stage(record, part, &mut outputs, &mut answer)?;
     }
+    if let Some(path) = &arguments.json {
+        outputs.stage_json(path, &report)?;
+    }
+    let path = arguments.coefficients.as_deref();
+    let table = || report.coefficient_table();
+    records::stage(path, table, "the coefficients", &mut outputs, &mut answer)?;
     outputs.commit()?;
     if let Some(path) = &arguments.json {
         answer.wrote(path, "the result for programs");
     }
     // Coefficients that mean nothing are no result.
-    if found.calibration.fit.is_gross() {
+    if !report.usable {
         answer.exit_code = exit::FAILED;
     }
     Ok(answer)
@@ -283,10 +279,7 @@ fn stopped(
     let mut outputs = Outputs::new();
     // Nothing was fitted, which leaves nothing to draw.
     if let Some(path) = arguments.views.report() {
-        let part = page::part(
-            &arguments.records[0],
-            of_calibration(&report, &[], calibration_screen(&report)),
-        )?;
+        let part = page::part(&arguments.records[0], of_calibration(&report, &[]))?;
         page::stage(path, vec![part], &mut outputs)?;
     }
     if let Some(path) = &arguments.json {
@@ -316,19 +309,14 @@ fn with_effects(
         })
 }
 
-/// Tests of the records for effects that the model lacks.
+/// What the diagnoses of the records say.
 fn effects(measurements: &[Measurement], gyro_axes: &[GyroAxes]) -> Vec<EffectTest> {
-    let tests = measurements
-        .iter()
-        .enumerate()
-        .filter_map(|(index, measurement)| {
-            let path = measurement.path.to_string_lossy().into_owned();
-            let axes = gyro_axes.get(index);
-            screen_record(&measurement.run(), axes, &DiagnoseOptions::default())
-                .inspect_err(|error| tracing::warn!(%error, path, "not tested for effects"))
-                .ok()
-                .map(|screened| screened.test(&path))
-        });
+    let tests = measurements.iter().enumerate().filter_map(|(index, one)| {
+        let (path, axes) = (one.path.to_string_lossy(), gyro_axes.get(index));
+        diagnose_calibrated(&path, &one.run(), axes, &DiagnoseOptions::default())
+            .inspect_err(|error| tracing::warn!(%error, %path, "not diagnosed"))
+            .ok()
+    });
     tests.collect()
 }
 
@@ -339,7 +327,7 @@ struct CalibrationRun {
     /// Axes of the gyros in each record, of a strapdown unit.
     gyro_axes: Vec<GyroAxes>,
     calibration: Calibration,
-    /// Tests of the records for effects that the model lacks.
+    /// What the diagnoses of the records say.
     effects: Vec<EffectTest>,
     /// The coefficients with the effects of `--with`.
     with_effects: Option<FittedEffects>,
@@ -349,27 +337,7 @@ struct CalibrationRun {
     first_run_sigmas: Option<[f64; Platform::PARAMETERS]>,
 }
 
-impl CalibrationRun {
-    /// Whether the noise of the accelerometers of a record is correlated.
-    fn is_correlated(&self, index: usize) -> bool {
-        let path = self.measurements[index].path.to_string_lossy();
-        let mut own = self.effects.iter().filter(|test| test.record == path);
-        own.any(|test| test.noise.iter().any(|id| is_correlation(id)))
-    }
-
-    /// Gross errors of the set-ups that were mended.
-    fn setup(&self) -> impl Iterator<Item = &SetupProblem> {
-        self.measurements
-            .iter()
-            .flat_map(|measurement| &measurement.setup)
-    }
-
-    fn has_several_records(&self) -> bool {
-        self.measurements.len() > 1
-    }
-}
-
-fn calibrate(
+fn calibrated(
     runs: &[Run<'_>],
     gyro_axes: &[GyroAxes],
     options: &Options,

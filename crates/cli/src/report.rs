@@ -13,10 +13,7 @@ use gyrocal_diagnosis::{
     DiagnoseOptions, DiagnosisError, Gate, RecordUncertainty, UncertaintyResult, diagnose_gated,
     record_uncertainty,
 };
-use gyrocal_pages::{
-    Part, calibration_screen, of_budget, of_calibration, of_diagnosis, of_plan, of_result,
-    of_spread,
-};
+use gyrocal_pages::{Part, of_budget, of_calibration, of_diagnosis, of_plan, of_result, of_spread};
 use gyrocal_record::{
     Bench, CalibrationReport, InputRole, Outputs, RecordFile, SourceText, printable_path,
 };
@@ -190,11 +187,9 @@ fn of_file(path: &Path) -> Result<Part, Failure> {
         return Ok(of_plan(&plan));
     }
     if has("verdict_text") {
-        let report: CalibrationReport = read(path, &source, gyrocal_record::SCHEMA_VERSION)?;
-        return page::part(
-            path,
-            of_calibration(&report, &[], calibration_screen(&report)),
-        );
+        let report: CalibrationReport =
+            read(path, &source, gyrocal_record::CALIBRATION_SCHEMA_VERSION)?;
+        return page::part(path, of_calibration(&report, &[]));
     }
     Err(Failure::Work(miette!(
         help =

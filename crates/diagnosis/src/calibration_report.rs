@@ -2,13 +2,13 @@
 
 use gyrocal::trajectory::angles_rad;
 use gyrocal_calibration::{
-    AzimuthSearch, Calibration, CoefficientEstimate, ConsiderSensitivity, NoiseEstimate,
-    NoiseRatio, RunResult, SiteQuantity, UnobservableCombination,
+    AzimuthSearch, Calibration, CoefficientEstimate, ConsiderSensitivity, RunResult, SiteQuantity,
+    UnobservableCombination, times_overlap,
 };
 use gyrocal_record::{
-    AveragedReport, AzimuthReport, CalibrationMethod, CalibrationReport, Coefficient, EffectTest,
-    FittedEffects, Manifest, NoiseRatioReport, NoiseReport, OtherAzimuth, RunReport,
-    SCHEMA_VERSION, SetupProblem, SiteReport, TurnOn, UndeterminedReport,
+    AveragedReport, AzimuthReport, CALIBRATION_SCHEMA_VERSION, CalibrationMethod,
+    CalibrationReport, Coefficient, EffectTest, FittedEffects, Manifest, OtherAzimuth, Record,
+    RecordReport, RunReport, SetupProblem, SiteReport, TurnOn, UndeterminedReport,
 };
 
 use crate::COEFFICIENTS;
@@ -21,7 +21,9 @@ pub struct CalibratedRecord<'a> {
     pub name: String,
     /// The name of its bench description.
     pub bench_name: String,
-    /// Rows, after averaging if there was any.
+    /// The record as it was calibrated.
+    pub record: &'a Record,
+    /// Rows before averaging.
     pub rows: usize,
     /// Averaging of its rows.
     pub averaged: Option<AveragedReport>,
@@ -38,7 +40,7 @@ pub struct CalibrationEvidence<'a> {
     pub records: Vec<CalibratedRecord<'a>>,
     /// The estimates.
     pub calibration: &'a Calibration,
-    /// Tests of the records for effects that the model lacks.
+    /// What the diagnoses of the records say.
     pub effects: &'a [EffectTest],
     /// The coefficients with given effects in the model.
     pub with_effects: Option<&'a FittedEffects>,
@@ -59,7 +61,7 @@ pub fn calibration_report(
     let setup = evidence.records.iter().flat_map(|record| record.setup);
     let runs = evidence.records.iter().zip(&calibration.runs);
     CalibrationReport {
-        schema_version: SCHEMA_VERSION,
+        schema_version: CALIBRATION_SCHEMA_VERSION,
         manifest,
         setup: setup.cloned().collect(),
         effects: evidence.effects.to_vec(),
@@ -74,6 +76,8 @@ pub fn calibration_report(
         verdict: evidence.verdict.verdict,
         verdict_text: evidence.verdict.text.clone(),
         iterations: calibration.iterations,
+        usable: !fit.is_gross(),
+        records: records(&evidence.records),
         rows: fit.rows(),
         final_angles_deg: Some(calibration.final_angles_rad.map(f64::to_degrees)),
         method: evidence.method,
@@ -103,32 +107,34 @@ fn undetermined(combination: &UnobservableCombination) -> UndeterminedReport {
     }
 }
 
+fn records(all: &[CalibratedRecord<'_>]) -> Vec<RecordReport> {
+    let told = all.iter().enumerate().map(|(place, one)| {
+        let earlier = all[..place].iter();
+        let overlaps = earlier.filter(|other| times_overlap(other.record, one.record));
+        RecordReport {
+            record: one.name.clone(),
+            bench: one.bench_name.clone(),
+            rows: one.rows,
+            duration_s: one.record.duration_s(),
+            averaged: one.averaged,
+            overlaps: overlaps.map(|other| other.name.clone()).collect(),
+        }
+    });
+    told.collect()
+}
+
 fn run_report(record: &CalibratedRecord<'_>, run: &RunResult) -> RunReport {
     let angles_deg = |platform_c_enu| angles_rad(platform_c_enu).map(f64::to_degrees);
     RunReport {
         record: record.name.clone(),
-        bench: record.bench_name.clone(),
-        rows: record.rows,
-        averaged: record.averaged,
         initial_angles_deg: angles_deg(&run.first_platform_c_enu),
         final_angles_deg: angles_deg(&run.last_platform_c_enu),
         turn_on: run
             .turn_on_deg_per_h
             .map(|gyros| gyros.map(|[estimate, sigma]| TurnOn { estimate, sigma })),
         azimuth: run.azimuth.as_ref().map(azimuth),
-        noise: run.noise.as_ref().map(noise),
+        noise: run.noise,
         bounded_values: run.bounded_values,
-    }
-}
-
-fn noise(estimate: &NoiseEstimate) -> NoiseReport {
-    let ratio = |found: NoiseRatio| NoiseRatioReport {
-        ratio: found.ratio,
-        interval: found.interval,
-    };
-    NoiseReport {
-        accel: estimate.accel.map(ratio),
-        gyro: estimate.gyro.map(ratio),
     }
 }
 
@@ -155,6 +161,7 @@ fn site(influence: &ConsiderSensitivity) -> SiteReport {
         quantity: quantity.to_owned(),
         unit: unit.to_owned(),
         declared_sigma: influence.declared_sigma,
+        assumed_error: influence.assumed_error(),
         from_record_sigma: sigma.is_finite().then_some(sigma),
         bias_per_unit: influence.bias_per_unit.to_vec(),
     }

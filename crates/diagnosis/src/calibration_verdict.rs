@@ -13,9 +13,9 @@ pub struct CalibrationVerdict {
     pub text: String,
 }
 
-/// The verdict on a fit: an effect that a record shows comes before the size of the innovations, since
+/// The verdict on a fit: what the diagnosis of a record names comes before the size of the innovations, since
 /// a test of all innovations together does not see a fault of ten sigmas of its own size. `records` are the
-/// names of all records, `effects` the tests of those that were tested.
+/// names of all records, `effects` what the diagnoses of those say that could be diagnosed.
 #[must_use]
 pub fn calibration_verdict(
     fit: &FitStatistics,
@@ -33,8 +33,11 @@ pub fn calibration_verdict(
             text: format!("{}{}", fit.consistency_text(), several_platforms(records)),
         };
     }
-    let shown: Vec<&EffectTest> = effects.iter().filter(|test| test.significant).collect();
     let several = records.len() > 1;
+    let shown: Vec<&EffectTest> = effects
+        .iter()
+        .filter(|one| !one.causes.is_empty())
+        .collect();
     if shown.is_empty() {
         return without_effects(fit, of_size, effects, several);
     }
@@ -45,10 +48,14 @@ pub fn calibration_verdict(
         FitVerdict::TooSmall => "smaller than",
         _ => "as large as",
     };
+    let (verdict, first) = match effects.iter().all(|one| one.settled) {
+        true => (FitVerdict::EffectsFound, "Model mismatch detected"),
+        false => (FitVerdict::NotSettled, "Not settled"),
+    };
     CalibrationVerdict {
-        verdict: FitVerdict::EffectsFound,
+        verdict,
         text: format!(
-            "Model mismatch detected: {} The coefficients may be biased by more than their sigmas. \
+            "{first}: {} The coefficients may be biased by more than their sigmas. \
              The innovations are {size} the declared noise predicts (mean NIS {:.3}, 99.9 % band \
              {low:.3} to {high:.3}).",
             sentences.join(" "),
@@ -57,7 +64,7 @@ pub fn calibration_verdict(
     }
 }
 
-/// The verdict where no effect is significant: innovations that are not white come before noise that differs,
+/// The verdict where no effect is named: innovations that are not white come before noise that differs,
 /// and both before the size of the innovations.
 fn without_effects(
     fit: &FitStatistics,
@@ -69,24 +76,19 @@ fn without_effects(
         true => format!("of {} ", printable_line(&test.record)),
         false => String::new(),
     };
-    let coloured = effects.iter().filter(|test| test.white == Some(false));
-    let coloured: Vec<String> = coloured
-        .map(|test| {
-            let p = test
-                .residual_p_value
-                .map_or_else(String::new, |p| format!(" ({})", p_value(p)));
-            format!("the innovations {}are not white{p}", of(test))
-        })
-        .collect();
-    let noisy = effects.iter().filter(|test| !test.noise.is_empty());
-    let noisy: Vec<String> = noisy
-        .map(|test| {
-            let ids = test.noise.join(", ");
-            format!("The noise {}differs from the declared: {ids}.", of(test))
-        })
-        .collect();
-    let verdict = match (coloured.is_empty(), of_size, noisy.is_empty()) {
-        (false, ..) => FitVerdict::Unexplained,
+    let open = effects
+        .iter()
+        .filter(|one| !one.settled || one.white == Some(false));
+    let open: Vec<String> = open.map(|one| left_open(one, &of(one))).collect();
+    let noisy = effects.iter().filter(|one| !one.noise.is_empty());
+    let noisy = noisy.map(|one| {
+        let ids = one.noise.join(", ");
+        format!("The noise {}differs from the declared: {ids}.", of(one))
+    });
+    let noisy: Vec<String> = noisy.collect();
+    let verdict = match (open.is_empty(), of_size, noisy.is_empty()) {
+        (false, ..) if effects.iter().all(|one| one.settled) => FitVerdict::Unexplained,
+        (false, ..) => FitVerdict::NotSettled,
         (true, FitVerdict::Consistent, false) => FitVerdict::NoiseDiffers,
         _ => of_size,
     };
@@ -95,11 +97,15 @@ fn without_effects(
         false => " No effect of the catalogue is significant.",
     };
     let size = fit.consistency_text();
+    let found = match verdict {
+        FitVerdict::Unexplained => "Model mismatch detected",
+        _ => "Not settled",
+    };
     let first = match verdict {
-        FitVerdict::Unexplained => format!(
-            "Model mismatch detected: {}, and no effect of the catalogue is significant. The coefficients may \
-             be biased by more than their sigmas. {size}",
-            coloured.join("; "),
+        FitVerdict::Unexplained | FitVerdict::NotSettled => format!(
+            "{found}: {}, and no effect of the catalogue is named. The coefficients may be biased by more than \
+             their sigmas. {size}",
+            open.join("; "),
         ),
         FitVerdict::NoiseDiffers => format!(
             "The mean NIS of all channels, {:.3}, is as expected, but it does not see all of the noise.{none}",
@@ -110,6 +116,16 @@ fn without_effects(
     let sentences: Vec<String> = core::iter::once(first).chain(noisy).collect();
     let text = sentences.join(" ");
     CalibrationVerdict { verdict, text }
+}
+
+/// What a diagnosis that names nothing leaves open; `of` names the record.
+fn left_open(test: &EffectTest, of: &str) -> String {
+    if test.white != Some(false) {
+        return format!("the search {of}ended at its budget of work");
+    }
+    let p = test.residual_p_value;
+    let p = p.map_or_else(String::new, |p| format!(" ({})", p_value(p)));
+    format!("the innovations {of}are not white{p}")
 }
 
 /// What a gross misfit of several records may come from.
@@ -127,16 +143,24 @@ fn several_platforms(records: &[String]) -> String {
 }
 
 fn sentence(test: &EffectTest, several: bool) -> String {
-    let of = if several {
-        format!("{} shows", printable_line(&test.record))
-    } else {
-        "the record shows".to_owned()
+    let of = match several {
+        true => format!("{} shows", printable_line(&test.record)),
+        false => "the record shows".to_owned(),
     };
-    let what = test.effect.as_deref().map_or_else(String::new, |effect| {
-        format!("; the largest is {effect}, {:.1} sigma", test.z)
+    let causes = test.causes.iter().map(|one| {
+        let also = match one.alternatives.is_empty() {
+            true => String::new(),
+            false => format!("; may also be {}", one.alternatives.join(", ")),
+        };
+        let p = one
+            .p_value
+            .map_or_else(String::new, |p| format!(", family-wise {}", p_value(p)));
+        format!("{} ({:.1} sigma{p}{also})", one.effect, one.z)
     });
-    format!(
-        "{of} an effect that the model lacks (family-wise {}{what}).",
-        p_value(test.p_value)
-    )
+    let causes: Vec<String> = causes.collect();
+    let open = match test.settled {
+        true => "",
+        false => ", and the diagnosis is not settled",
+    };
+    format!("{of} what the model lacks: {}{open}.", causes.join(", "))
 }

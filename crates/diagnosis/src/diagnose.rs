@@ -7,9 +7,9 @@ mod given;
 mod gyro_noise;
 mod later;
 mod noise_audited_fit;
+mod of_calibration;
 mod options;
 mod records;
-mod screening;
 mod shared_or_own;
 mod stopped;
 mod untestable_rows;
@@ -42,12 +42,12 @@ use gyro_noise::{gyro_noise_findings, over_declared};
 use gyrocal_answer::{Answer, FalseAlarmShares, Gain};
 pub use later::predict_later;
 use noise_audited_fit::{AuditedFit, noise_audited_fit};
+pub use of_calibration::diagnose_calibrated;
 pub use options::DiagnoseOptions;
 pub use records::{
     RecordToDiagnose, RecordsDiagnosis, diagnose_records, diagnose_together, problems_of,
     records_summary,
 };
-pub use screening::{ScreenedRecord, screen_record};
 use shared_or_own::sizes_by_record;
 use untestable_rows::detect_outliers;
 

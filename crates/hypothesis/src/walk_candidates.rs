@@ -79,14 +79,6 @@ impl Candidates {
         (gained, self.p_value(gained))
     }
 
-    /// The effect of the largest walk.
-    pub(crate) fn largest(&self) -> Option<&'static str> {
-        let sizes = self.rates.iter().map(|rate| self.fit.noise.walk[*rate]);
-        let all = self.effects.iter().zip(sizes);
-        all.max_by(|a, b| a.1.total_cmp(&b.1))
-            .map(|(effect, _)| effect.id)
-    }
-
     /// Log-likelihood of the nominal model with all walks.
     pub(crate) fn log_likelihood(&self) -> f64 {
         self.fit.log_likelihood

@@ -1,15 +1,9 @@
 //! The page of a calibration.
 
-use gyrocal_calibration::{FittedPlatform, is_gross};
-use gyrocal_document::{
-    Cell, Column, EstimateRow, Estimates, Item, List, Part, Screen, Section, Standing, Table, Tint,
-    ValueWithSigma,
-};
-use gyrocal_record::{
-    Bench, CalibrationReport, Coefficient, FitVerdict, NoiseReport, Record, RunReport,
-};
-use gyrocal_statistics::format;
-use gyrocal_words::{first_input_files, record_and_bench};
+use gyrocal_calibration::FittedPlatform;
+use gyrocal_document::{EstimateRow, Estimates, Item, Part, Section, Tint, ValueWithSigma};
+use gyrocal_record::{Bench, CalibrationReport, Coefficient, Record};
+use gyrocal_words::{calibration, calibration_screen};
 
 use crate::diagnosis::open_loop::{self, Simulated};
 use crate::diagnosis::{coefficients, section};
@@ -29,14 +23,13 @@ pub struct CalibratedRecord<'a, 'b> {
     pub fit: &'a FittedPlatform<'b>,
 }
 
-/// The page of a calibration with its first screen. Charts over time are of the records that are given.
+/// The page of a calibration. Charts over time are of the records that are given.
 ///
 /// # Errors
 /// [`PageError`] where a simulation fails.
 pub fn of_calibration(
     report: &CalibrationReport,
     records: &[CalibratedRecord<'_, '_>],
-    first: Screen,
 ) -> Result<Part, PageError> {
     let mut sections = Vec::new();
     for (place, one) in records.iter().enumerate() {
@@ -45,27 +38,14 @@ pub fn of_calibration(
     if !report.coefficients.is_empty() {
         sections.push(estimates(report));
     }
-    sections.extend(undetermined(report));
-    if let Some(first) = records.first() {
-        sections.push(coefficients::site(first.fit)?);
-    }
-    let runs: Vec<Item> = runs(report).into_iter().map(Item::from).collect();
-    if !runs.is_empty() {
-        sections.push(section(
-            "records",
-            "Records",
-            "Attitude and noise of each record; noise is estimated by maximum likelihood.",
-            runs,
-        ));
-    }
     sections.push(section(
         "words",
         "In words",
-        "The verdict with the tests that it rests on.",
-        vec![Item::text(&*report.verdict_text)],
+        "Records, verdict with the tests that it rests on, what the records determine, noise, site.",
+        calibration(report).into_iter().map(Item::Words).collect(),
     ));
     Ok(Part {
-        name: match report.runs.len() {
+        name: match report.records.len() {
             0 | 1 => file_name(&report.manifest, 0, "record"),
             count => format!(
                 "{} and {} further records",
@@ -74,67 +54,10 @@ pub fn of_calibration(
             ),
         },
         size: format!("{} rows used", report.rows),
-        first,
+        first: calibration_screen(report),
         sections,
         origin: origin(&report.manifest),
     })
-}
-
-/// The first screen of a written calibration: what it tells without the records.
-#[must_use]
-pub fn calibration_screen(report: &CalibrationReport) -> Screen {
-    let (standing, verdict) = match report.verdict {
-        _ if report.nis_mean.is_some_and(is_gross) => (Standing::Bad, "NOT USABLE"),
-        FitVerdict::Consistent => (Standing::Good, "CALIBRATED"),
-        FitVerdict::EffectsFound => (Standing::Bad, "FAULT"),
-        FitVerdict::TooLarge | FitVerdict::TooSmall | FitVerdict::NoiseDiffers => {
-            (Standing::Doubtful, "MISFIT")
-        }
-        FitVerdict::Unexplained => (Standing::Bad, "UNEXPLAINED"),
-        _ => (Standing::Bad, "SET-UP WRONG"),
-    };
-    let mut screen = Screen::new(standing, verdict, &*report.verdict_text);
-    if report.verdict == FitVerdict::Setup {
-        for problem in &report.setup {
-            screen.fact("what is wrong", problem.text());
-        }
-        return screen;
-    }
-    let shown = report.effects.iter().filter(|test| test.significant);
-    let effects: Vec<&str> = shown.filter_map(|test| test.effect.as_deref()).collect();
-    screen.fact("first sign", listed(&effects));
-    if let (Some(mean), Some([low, high])) = (report.nis_mean, report.nis_band) {
-        let words = format!("mean NIS {mean:.3} (expected {low:.3} to {high:.3})");
-        screen.fact("how sure", words);
-    }
-    let open = report.coefficients.iter().filter(|one| !one.determined);
-    let open: Vec<&str> = open.map(|one| &*one.name).collect();
-    screen.fact("not determined", listed(&open));
-    let rows = report.coefficients.iter().map(|one| {
-        let [estimate, sigma] = format::estimate(one.estimate, one.sigma);
-        [
-            one.name.clone(),
-            format!("{estimate} ± {sigma}"),
-            one.unit.clone(),
-        ]
-    });
-    screen.table = Some(Table::new(
-        "Drift coefficients",
-        vec![
-            Column::words("coefficient"),
-            Column::numbers("estimate ± σ"),
-            Column::words("unit"),
-        ],
-        rows,
-    ));
-    let inputs = &report.manifest.inputs;
-    let files = first_input_files(inputs).unwrap_or_else(|| record_and_bench(inputs));
-    let why = match report.verdict {
-        FitVerdict::Consistent => "tests for all else, and says what could go undetected",
-        _ => "looks for the causes",
-    };
-    screen.then(format!("gyrocal diagnose {files}"), why);
-    screen
 }
 
 /// The sections over time of a record; of several with its number in their anchors.
@@ -204,81 +127,4 @@ fn estimates(report: &CalibrationReport) -> Section {
             note_head: "determined".to_owned(),
         })],
     )
-}
-
-fn undetermined(report: &CalibrationReport) -> Option<Section> {
-    let entries = report.undetermined.iter().map(|one| {
-        let share = format::percent(one.share_of_prior);
-        format!(
-            "{}: its sigma is {share} of that before the record",
-            one.text
-        )
-    });
-    let entries: Vec<String> = entries.collect();
-    (!entries.is_empty()).then(|| {
-        section(
-            "limits",
-            "What cannot be told apart",
-            "Combinations of coefficients, each over its prior sigma, of which the record says little.",
-            vec![Item::from(List {
-                title: String::new(),
-                entries,
-            })],
-        )
-    })
-}
-
-fn runs(report: &CalibrationReport) -> Vec<Table> {
-    let angles = |deg: [f64; 3]| {
-        deg.map(|angle| format!("{angle:.3}"))
-            .join(", ")
-            .replace('-', "−")
-    };
-    let mut attitudes = Vec::new();
-    let mut noises = Vec::new();
-    for run in &report.runs {
-        attitudes.push(vec![
-            Cell::from(run.record.clone()),
-            Cell::from(run.rows.to_string()),
-            Cell::from(angles(run.initial_angles_deg)),
-            Cell::from(angles(run.final_angles_deg)),
-        ]);
-        noises.extend(run.noise.as_ref().map(|noise| noise_row(run, noise)));
-    }
-    let mut tables = vec![Table {
-        title: "Attitude: angles about x, y, z".to_owned(),
-        columns: vec![
-            Column::words("record"),
-            Column::numbers("rows"),
-            Column::numbers("first row, deg"),
-            Column::numbers("last row, deg"),
-        ],
-        rows: attitudes,
-    }];
-    tables.push(Table {
-        title: "Estimated over declared noise: x, y, z".to_owned(),
-        columns: vec![
-            Column::words("record"),
-            Column::numbers("accelerometers"),
-            Column::numbers("gyros"),
-        ],
-        rows: noises,
-    });
-    tables.retain(|table| !table.rows.is_empty());
-    tables
-}
-
-fn noise_row(run: &RunReport, noise: &NoiseReport) -> Vec<Cell> {
-    let ratios = |of: &[gyrocal_record::NoiseRatioReport; 3]| {
-        let each = of.iter().map(|one| {
-            let [low, high] = one.interval;
-            format!("{:.3} ({low:.3} to {high:.3})", one.ratio)
-        });
-        Cell::from(each.collect::<Vec<_>>().join(", "))
-    };
-    vec![
-        Cell::from(run.record.clone()),
-        ratios(&noise.accel),
-        ratios(&noise.gyro),
-    ]
 }

@@ -44,7 +44,7 @@ mod words;
 use gyrocal_answer::{Answer, Subject};
 
 pub use allan::{AllanAnswer, of_allan};
-pub use calibration::{CalibratedRecord, calibration_screen, of_calibration};
+pub use calibration::{CalibratedRecord, of_calibration};
 pub use diagnosis::of_diagnosis;
 pub use error::PageError;
 pub use fleet::of_fleet;

@@ -9,7 +9,7 @@ use gyrocal_calibration::{
 use gyrocal_cli::NotCalibrated;
 use gyrocal_diagnosis::{
     CalibratedRecord, CalibrationEvidence, DiagnoseOptions, Gate, calibration_report,
-    calibration_verdict, fit_effects, screen_record,
+    calibration_verdict, diagnose_calibrated, fit_effects,
 };
 use gyrocal_record::{
     AveragedReport, Bench, CalibrationMethod, CalibrationReport, EffectTest, FittedEffects,
@@ -113,6 +113,8 @@ struct Sound<'a> {
     given: Given<'a>,
     record: Cow<'a, Record>,
     bench: Cow<'a, Bench>,
+    /// Rows before averaging.
+    rows: usize,
     averaged: Option<AveragedReport>,
     setup: Vec<SetupProblem>,
 }
@@ -190,7 +192,8 @@ impl<'a> Sound<'a> {
         CalibratedRecord {
             name: self.given.record.input.path.clone(),
             bench_name: self.given.bench.input.path.clone(),
-            rows: self.record.len(),
+            record: &self.record,
+            rows: self.rows,
             averaged: self.averaged,
             setup: &self.setup,
         }
@@ -203,14 +206,10 @@ impl<'a> Sound<'a> {
             advice: Some("choose average_s between these, or leave it out".to_owned()),
             ..Failure::default()
         })?;
+        let bench = means.bench(&self.bench);
         Ok(Self {
-            averaged: Some(AveragedReport {
-                interval_s,
-                rows_read: self.record.len(),
-                left_out: means.left_out,
-                noise_ratio: means.noise_ratio,
-            }),
-            bench: Cow::Owned(means.bench(&self.bench)),
+            averaged: Some(means.report(&bench, interval_s)),
+            bench: Cow::Owned(bench),
             record: Cow::Owned(means.record),
             ..self
         })
@@ -231,6 +230,7 @@ fn sound<'a>(
         if let Some(record) = gate.usable {
             sound.push(Sound {
                 given: *one,
+                rows: record.len(),
                 record,
                 bench: Cow::Borrowed(&one.bench.bench),
                 averaged: None,
@@ -338,13 +338,11 @@ fn with_effects(
     })
 }
 
-/// Tests of the records for effects that the model lacks.
+/// What the diagnoses of the records say.
 fn effects(names: &[String], runs: &[Run<'_>], axes: &[GyroAxes]) -> Vec<EffectTest> {
     let pairs = names.iter().zip(runs).enumerate();
     let tests = pairs.filter_map(|(index, (name, run))| {
-        let axes = axes.get(index);
-        let screened = screen_record(run, axes, &DiagnoseOptions::default()).ok()?;
-        Some(screened.test(name))
+        diagnose_calibrated(name, run, axes.get(index), &DiagnoseOptions::default()).ok()
     });
     tests.collect()
 }

@@ -4,7 +4,7 @@ use gyrocal_answer::read_text;
 use gyrocal_design::PlanResult;
 use gyrocal_document::Words;
 use gyrocal_fleet::FleetResult;
-use gyrocal_pages::{Part, calibration_screen, of_calibration, of_fleet, of_plan, of_result, page};
+use gyrocal_pages::{Part, of_calibration, of_fleet, of_plan, of_result, page};
 use gyrocal_record::{CalibrationReport, SourceText};
 use gyrocal_report::{to_html, words_to_html};
 use pyo3::prelude::*;
@@ -53,8 +53,7 @@ fn part((kind, result, page): Given<'_>) -> Outcome<Part> {
         // Charts over time need the records.
         "Calibration" => {
             let report = read::<CalibrationReport>(result)?;
-            of_calibration(&report, &[], calibration_screen(&report))
-                .map_err(|error| Failure::of_text(&error))?
+            of_calibration(&report, &[]).map_err(|error| Failure::of_text(&error))?
         }
         "Plan" => of_plan(&read::<PlanResult>(result)?),
         "Fleet" => of_fleet(&read::<FleetResult>(result)?),

@@ -69,6 +69,7 @@ mod json_schema;
 mod manifest;
 mod model_file;
 mod module_name;
+mod noise_ratio;
 mod output;
 mod plausible;
 mod printable;
@@ -97,15 +98,16 @@ pub use json_schema::written_schema;
 pub use manifest::{Input, InputRole, Manifest};
 pub use model_file::{Gyros, KnownEffect, ModelFile, ParameterEstimate, Standing};
 pub use module_name::module_name;
+pub use noise_ratio::{NoiseDifference, NoiseEstimate, NoiseRatio};
 pub use output::{Outputs, write_json, write_whole};
 pub use printable::{printable, printable_line, printable_path, shell_quoted};
 pub use record::Record;
 pub use record_file::RecordFile;
 pub use report::{
-    AveragedReport, AzimuthReport, CalibrationMethod, CalibrationReport, Coefficient, EffectTest,
-    FitVerdict, FittedEffect, FittedEffects, FittedParameter, NoiseRatioReport, NoiseReport,
-    OtherAzimuth, RunReport, SCHEMA_VERSION, SimulationReport, SiteReport, TrueCoefficient, TurnOn,
-    UndeterminedReport,
+    AveragedReport, AzimuthReport, CALIBRATION_SCHEMA_VERSION, CalibrationMethod,
+    CalibrationReport, Coefficient, EffectTest, FitVerdict, FittedEffect, FittedEffects,
+    FittedParameter, NamedCause, OtherAzimuth, RecordReport, RunReport, SCHEMA_VERSION,
+    SimulationReport, SiteReport, TrueCoefficient, TurnOn, UndeterminedReport,
 };
 pub use result_table::ResultTable;
 pub use setup::SetupProblem;

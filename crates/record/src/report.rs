@@ -3,16 +3,20 @@
 use serde::{Deserialize, Serialize};
 
 use crate::manifest::Manifest;
+use crate::noise_ratio::NoiseEstimate;
 use crate::setup::SetupProblem;
 
 /// Version of the JSON results; it rises when a field changes its meaning or goes away.
 pub const SCHEMA_VERSION: u32 = 1;
 
+/// The same of [`CalibrationReport`].
+pub const CALIBRATION_SCHEMA_VERSION: u32 = 2;
+
 /// Result of `gyrocal calibrate`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct CalibrationReport {
-    /// [`SCHEMA_VERSION`] at the time of writing.
+    /// [`CALIBRATION_SCHEMA_VERSION`] at the time of writing.
     pub schema_version: u32,
     /// Origin of the result.
     pub manifest: Manifest,
@@ -20,7 +24,7 @@ pub struct CalibrationReport {
     /// was estimated.
     #[serde(default)]
     pub setup: Vec<SetupProblem>,
-    /// Test of each record for effects that the model lacks; empty where none was made.
+    /// What the diagnosis of each record says; empty where none was made.
     #[serde(default)]
     pub effects: Vec<EffectTest>,
     /// The drift coefficients, in the order of `covariance`; empty if nothing was estimated.
@@ -38,6 +42,11 @@ pub struct CalibrationReport {
     pub verdict_text: String,
     /// Iterations of the batch estimator; 1 for one pass of the filter.
     pub iterations: usize,
+    /// Whether the coefficients mean anything: not if the innovations are far larger than the noise, or nothing was
+    /// estimated.
+    pub usable: bool,
+    /// The records, in their order; empty if nothing was estimated.
+    pub records: Vec<RecordReport>,
     /// Rows that were used, of all records.
     pub rows: usize,
     /// Platform against local east, north, up at the last row of the last record: angles about
@@ -68,7 +77,7 @@ impl CalibrationReport {
     ) -> Self {
         let texts: Vec<String> = setup.iter().map(SetupProblem::text).collect();
         Self {
-            schema_version: SCHEMA_VERSION,
+            schema_version: CALIBRATION_SCHEMA_VERSION,
             manifest,
             verdict_text: format!("The set-up is wrong: {}", texts.join(" ")),
             setup,
@@ -79,6 +88,8 @@ impl CalibrationReport {
             nis_band: None,
             verdict: FitVerdict::Setup,
             iterations: 0,
+            usable: false,
+            records: Vec::new(),
             rows: 0,
             final_angles_deg: None,
             method,
@@ -91,30 +102,36 @@ impl CalibrationReport {
     }
 }
 
-/// Test of a record for effects that the model lacks: the first detection test of a diagnosis.
+/// What the diagnosis of a calibrated record says.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct EffectTest {
     /// The record, as its path was given.
     pub record: String,
-    /// The effect that a diagnosis would name first, whether it is significant or not.
-    pub effect: Option<String>,
-    /// Its size in standard deviations.
-    pub z: f64,
-    /// Family-wise p-value of the largest of all statistics.
-    pub p_value: f64,
-    /// Whether a diagnosis would name an effect.
-    pub significant: bool,
-    /// What differs from the declared noise, without an effect in the model, by the ids of a diagnosis.
-    #[serde(default)]
+    /// Causes that it names, in the order of its findings.
+    pub causes: Vec<NamedCause>,
+    /// What differs from the declared noise, by the ids of a diagnosis.
     pub noise: Vec<String>,
-    /// Whether the innovations are white, without an effect in the model; `None` of a record too short for the
-    /// test.
-    #[serde(default)]
+    /// Whether the innovations are white with all this in the model; `None` of a record too short for the test.
     pub white: Option<bool>,
     /// p-value of that test.
-    #[serde(default)]
     pub residual_p_value: Option<f64>,
+    /// Whether names hold: the search ended by itself, and what is named leaves white innovations.
+    pub settled: bool,
+}
+
+/// A cause that a diagnosis names.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct NamedCause {
+    /// Id of the effect.
+    pub effect: String,
+    /// Effects that the record does not tell apart from it.
+    pub alternatives: Vec<String>,
+    /// Its size in standard deviations.
+    pub z: f64,
+    /// Family-wise p-value of the search; `None` where it was not computed for the final model.
+    pub p_value: Option<f64>,
 }
 
 /// The drift coefficients with given effects in the model.
@@ -193,6 +210,9 @@ pub enum FitVerdict {
     EffectsFound,
     /// The innovations of a record are not white, and no effect of the catalogue is significant.
     Unexplained,
+    /// The diagnosis of a record is not settled: its search ended at its budget of work, or what it names leaves
+    /// innovations that are not white.
+    NotSettled,
     /// The noise of a record is not the declared one in another way than its size: it is correlated, has outliers
     /// or steps, or that of single channels is not as declared.
     NoiseDiffers,
@@ -226,18 +246,30 @@ pub struct UndeterminedReport {
     pub share_of_prior: f64,
 }
 
+/// A record that was calibrated.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct RecordReport {
+    /// The record, as its path was given.
+    pub record: String,
+    /// Its bench description.
+    pub bench: String,
+    /// Its rows.
+    pub rows: usize,
+    /// From its first row to its last.
+    pub duration_s: f64,
+    /// Averaging of its rows, if they were averaged.
+    pub averaged: Option<AveragedReport>,
+    /// Records before it whose times overlap its own, although they begin at another time.
+    pub overlaps: Vec<String>,
+}
+
 /// Results for one record.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct RunReport {
     /// The record, as its path was given.
     pub record: String,
-    /// Its bench description.
-    pub bench: String,
-    /// Rows, after averaging if there was any.
-    pub rows: usize,
-    /// Averaging of its rows, if they were averaged.
-    pub averaged: Option<AveragedReport>,
     /// Platform against local east, north, up at the first row: angles about x, y, z \[deg\].
     pub initial_angles_deg: [f64; 3],
     /// The same at the last row.
@@ -248,7 +280,7 @@ pub struct RunReport {
     /// Search for the azimuth, if the bench description does not give it.
     pub azimuth: Option<AzimuthReport>,
     /// Noise by maximum likelihood over the declared one.
-    pub noise: Option<NoiseReport>,
+    pub noise: Option<NoiseEstimate>,
     /// Values whose influence was bounded.
     pub bounded_values: usize,
 }
@@ -259,12 +291,15 @@ pub struct RunReport {
 pub struct AveragedReport {
     /// Length of the averaging intervals.
     pub interval_s: f64,
-    /// Number of rows before averaging.
-    pub rows_read: usize,
+    /// Number of means.
+    pub means: usize,
     /// Number of components of means left out because they had too few values.
     pub left_out: usize,
     /// Standard deviation of the noise of a mean over that of one value.
     pub noise_ratio: f64,
+    /// Share of the variance of a mean that is the attitude random walk within an interval, which the declared noise
+    /// does not include.
+    pub walk_share: f64,
 }
 
 /// Constant drift of a gyro in one turn-on less its mean over turn-ons.
@@ -299,26 +334,6 @@ pub struct OtherAzimuth {
     pub log_likelihood_deficit: f64,
 }
 
-/// Noise by maximum likelihood over the declared one, of instruments x, y, z.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct NoiseReport {
-    /// Of the accelerometers.
-    pub accel: [NoiseRatioReport; 3],
-    /// Of the gyros.
-    pub gyro: [NoiseRatioReport; 3],
-}
-
-/// An estimated standard deviation over the declared one.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct NoiseRatioReport {
-    /// The estimate.
-    pub ratio: f64,
-    /// Its 95 % interval.
-    pub interval: [f64; 2],
-}
-
 /// Sensitivity of the coefficients to an error of a site quantity.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -329,6 +344,8 @@ pub struct SiteReport {
     pub unit: String,
     /// The standard deviation that the bench description declares; the sigmas include it.
     pub declared_sigma: Option<f64>,
+    /// The error that biases are told for: the declared standard deviation, else one that is easily met.
+    pub assumed_error: f64,
     /// Standard deviation if it were estimated from the records alone; `None` if it is
     /// unobservable.
     pub from_record_sigma: Option<f64>,

@@ -6,11 +6,11 @@ use std::fs;
 use std::path::Path;
 
 use gyrocal_record::{
-    AveragedReport, AzimuthReport, Bench, CalibrationMethod, CalibrationReport, Coefficient,
-    EffectTest, Error, FitVerdict, FittedEffect, FittedEffects, FittedParameter, GimbalLimits,
-    Gravity, Input, Manifest, NoiseRatioReport, NoiseReport, OtherAzimuth, Outputs, Prior, Record,
-    RunReport, SCHEMA_VERSION, SiteReport, SiteUncertainty, TurnOn, UndeterminedReport, write_json,
-    write_whole,
+    AveragedReport, AzimuthReport, Bench, CALIBRATION_SCHEMA_VERSION, CalibrationMethod,
+    CalibrationReport, Coefficient, EffectTest, Error, FitVerdict, FittedEffect, FittedEffects,
+    FittedParameter, GimbalLimits, Gravity, Input, Manifest, NamedCause, NoiseEstimate, NoiseRatio,
+    OtherAzimuth, Outputs, Prior, Record, RecordReport, RunReport, SiteReport, SiteUncertainty,
+    TurnOn, UndeterminedReport, write_json, write_whole,
 };
 
 fn record() -> Record {
@@ -162,7 +162,7 @@ fn a_bench_is_read_as_it_was_written() {
 
 fn report() -> CalibrationReport {
     CalibrationReport {
-        schema_version: SCHEMA_VERSION,
+        schema_version: CALIBRATION_SCHEMA_VERSION,
         manifest: Manifest {
             program: "gyrocal".to_owned(),
             version: "0.1.0".to_owned(),
@@ -174,13 +174,16 @@ fn report() -> CalibrationReport {
         setup: Vec::new(),
         effects: vec![EffectTest {
             record: "r.csv".to_owned(),
-            effect: Some("gyro_y.g_z".to_owned()),
-            z: 16.1,
-            p_value: 1e-40,
-            significant: true,
+            causes: vec![NamedCause {
+                effect: "gyro_y.g_z".to_owned(),
+                alternatives: vec!["gyro_y.magnetic".to_owned()],
+                z: 16.1,
+                p_value: Some(1e-40),
+            }],
             noise: vec!["accel.coloured_noise".to_owned()],
             white: Some(true),
             residual_p_value: Some(0.4),
+            settled: true,
         }],
         coefficients: vec![Coefficient {
             name: "gyro_x.bias".to_owned(),
@@ -195,6 +198,8 @@ fn report() -> CalibrationReport {
         verdict: FitVerdict::Consistent,
         verdict_text: "fits".to_owned(),
         iterations: 2,
+        usable: true,
+        records: vec![record_report()],
         rows: 4321,
         final_angles_deg: Some([1.0, 2.0, 3.0]),
         method: CalibrationMethod::Batch,
@@ -207,6 +212,7 @@ fn report() -> CalibrationReport {
         site: vec![SiteReport {
             quantity: "latitude".to_owned(),
             unit: "deg".to_owned(),
+            assumed_error: 1e-3,
             declared_sigma: None,
             from_record_sigma: Some(1e-3),
             bias_per_unit: vec![-0.3],
@@ -231,8 +237,25 @@ fn report() -> CalibrationReport {
     }
 }
 
+fn record_report() -> RecordReport {
+    RecordReport {
+        record: "r.csv".to_owned(),
+        bench: "b.toml".to_owned(),
+        rows: 259_201,
+        duration_s: 259_200.0,
+        averaged: Some(AveragedReport {
+            interval_s: 60.0,
+            means: 4321,
+            left_out: 2,
+            noise_ratio: 0.129,
+            walk_share: 0.01,
+        }),
+        overlaps: Vec::new(),
+    }
+}
+
 fn run_report() -> RunReport {
-    let noise = NoiseRatioReport {
+    let noise = NoiseRatio {
         ratio: 1.01,
         interval: [0.98, 1.04],
     };
@@ -242,14 +265,6 @@ fn run_report() -> RunReport {
     };
     RunReport {
         record: "r.csv".to_owned(),
-        bench: "b.toml".to_owned(),
-        rows: 4321,
-        averaged: Some(AveragedReport {
-            interval_s: 60.0,
-            rows_read: 259_201,
-            left_out: 2,
-            noise_ratio: 0.129,
-        }),
         initial_angles_deg: [0.5, 0.25, -1.0],
         final_angles_deg: [1.0, 2.0, 3.0],
         turn_on: Some([turn_on; 3]),
@@ -261,7 +276,7 @@ fn run_report() -> RunReport {
                 log_likelihood_deficit: 31.0,
             }),
         }),
-        noise: Some(NoiseReport {
+        noise: Some(NoiseEstimate {
             accel: [noise; 3],
             gyro: [noise; 3],
         }),

@@ -1,19 +1,21 @@
 //! What people read of an answer, as plain data: sentences, tables and first screens.
 //!
-//! Everything here is made from [`gyrocal_answer`] alone, so that a terminal, a page and a program in another
+//! Everything here is made from results alone, so that a terminal, a page and a program in another
 //! language say the same words. [`diagnosis()`] gives all of an answer on a platform in reading order, and [`plant`]
-//! that on any plant; whoever shows it breaks lines and draws tables. [`first_screen`] gives what a person reads
+//! that on any plant, [`calibration()`] that of a calibration; whoever shows it breaks lines and draws tables. [`first_screen`] gives what a person reads
 //! first. The engines take from here the reasons that an answer carries in words.
 //!
 //! # What it does not do
 //!
 //! It estimates and judges nothing, and knows neither terminals nor pages.
 
+mod calibration;
 mod diagnosis;
 mod files;
 mod format;
 pub mod plant;
 
+pub use calibration::{calibration, calibration_screen, calibration_tables};
 pub use diagnosis::{
     SET_UPS_WITHOUT_ANGLES, diagnosis, explained, files, first_screen, groups, is_correlation,
     likelihood, may_also_be, near_twins, not_settled, not_tested, parameter_values,

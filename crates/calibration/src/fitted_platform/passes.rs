@@ -10,7 +10,8 @@ use super::FittedPlatform;
 use super::several::add_score;
 use crate::coefficients::PARAMETERS;
 use crate::error::CalibrationError;
-use crate::noise::{self, NoiseEstimate};
+use crate::noise;
+use gyrocal_record::NoiseEstimate;
 
 impl FittedPlatform<'_> {
     /// Whitened innovations of the fit, row by row; NaN where there is no value.

@@ -61,10 +61,12 @@ fn biases_by_the_site_are_those_of_the_calibration() {
     for found in fit.site_biases().unwrap() {
         let expected = joint.site_sensitivity(found.quantity).unwrap();
         assert_eq!(found.is_declared, expected.declared_sigma.is_some());
-        for (index, bias) in joint.biases(expected).iter().enumerate() {
-            let off = found.in_sigmas[index] - bias.in_sigmas;
+        for (index, per_unit) in expected.bias_per_unit.into_iter().enumerate() {
+            let sigma = joint.covariance[index][index].sqrt();
+            let in_sigmas = per_unit * expected.assumed_error() / sigma;
+            let off = found.in_sigmas[index] - in_sigmas;
             assert!(
-                off.abs() < 1e-3 * (1.0 + bias.in_sigmas.abs()),
+                off.abs() < 1e-3 * (1.0 + in_sigmas.abs()),
                 "{:?} {index}: {off}",
                 found.quantity
             );

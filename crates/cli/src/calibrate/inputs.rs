@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
-use gyrocal_calibration::{Options, Run, attitude_walk_share, average_record};
+use gyrocal_calibration::{Options, Run, average_record};
 use gyrocal_diagnosis::Gate;
 use gyrocal_record::{AveragedReport, Bench, Record, SetupProblem, printable_path};
 use miette::miette;
@@ -18,21 +18,13 @@ pub(super) struct Measurement {
     pub(super) bench_path: PathBuf,
     pub(super) record: Record,
     pub(super) bench: Bench,
-    pub(super) averaged: Option<Averaging>,
+    /// Rows before averaging.
+    pub(super) rows: usize,
+    pub(super) averaged: Option<AveragedReport>,
     /// Gross errors of the set-up.
     pub(super) setup: Vec<SetupProblem>,
     /// Whether one of them leaves nothing sound; the record is then as it was given.
     pub(super) stops: bool,
-}
-
-/// Averaging of the rows of a record.
-#[derive(Clone, Copy)]
-pub(super) struct Averaging {
-    pub(super) report: AveragedReport,
-    /// Number of means.
-    pub(super) means: usize,
-    /// Share of the variance of a mean that is the attitude random walk within an interval.
-    pub(super) walk_share: f64,
 }
 
 impl Measurement {
@@ -60,15 +52,17 @@ pub(super) fn read(arguments: &CalibrateArguments) -> Result<Vec<Measurement>, F
         let bench = if benches.len() == 1 { 0 } else { index };
         let file = arguments.map.read(path)?;
         let found = Gate::of_file(kind, &file, &read[bench], &Options::default())?;
+        let stops = found.stops();
+        let record = found.usable;
+        let record = record.map_or_else(|| found.record.clone(), Cow::into_owned);
         measurements.push(Measurement {
             path: path.clone(),
             bench_path: benches[bench].clone(),
             bench: read[bench].clone(),
             averaged: None,
-            stops: found.stops(),
-            record: found
-                .usable
-                .map_or_else(|| found.record.clone(), Cow::into_owned),
+            stops,
+            rows: record.len(),
+            record,
             setup: found.problems,
         });
     }
@@ -142,16 +136,7 @@ fn take_means(measurement: &mut Measurement, interval_s: f64) -> Result<(), Fail
         ))
     })?;
     let bench = averaged.bench(&measurement.bench);
-    measurement.averaged = Some(Averaging {
-        report: AveragedReport {
-            interval_s,
-            rows_read: measurement.record.len(),
-            left_out: averaged.left_out,
-            noise_ratio: averaged.noise_ratio,
-        },
-        means: averaged.means,
-        walk_share: attitude_walk_share(&bench, interval_s),
-    });
+    measurement.averaged = Some(averaged.report(&bench, interval_s));
     measurement.bench = bench;
     measurement.record = averaged.record;
     Ok(())

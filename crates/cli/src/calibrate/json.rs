@@ -42,8 +42,9 @@ fn record(measurement: &Measurement) -> CalibratedRecord<'_> {
     CalibratedRecord {
         name: measurement.path.display().to_string(),
         bench_name: measurement.bench_path.display().to_string(),
-        rows: measurement.record.len(),
-        averaged: measurement.averaged.map(|averaged| averaged.report),
+        record: &measurement.record,
+        rows: measurement.rows,
+        averaged: measurement.averaged,
         setup: &measurement.setup,
     }
 }

@@ -3,7 +3,6 @@
 use std::path::Path;
 
 use gyrocal_calibration::{FittedPlatform, NoiseModel, Options};
-use gyrocal_document::Screen;
 use gyrocal_pages::{CalibratedRecord, Part, of_calibration};
 use gyrocal_record::CalibrationReport;
 
@@ -14,13 +13,13 @@ use crate::{Failure, page};
 /// over time.
 pub(super) fn part(
     path: &Path,
-    (report, first): (&CalibrationReport, Screen),
+    report: &CalibrationReport,
     found: &CalibrationRun,
     options: &Options,
 ) -> Result<Part, Failure> {
     let measurements = found.measurements.iter();
     let fits = measurements.enumerate().filter_map(|(index, measurement)| {
-        if found.calibration.fit.is_gross() {
+        if !report.usable {
             return None;
         }
         let (axes, noise) = (found.gyro_axes.get(index), NoiseModel::default());
@@ -39,5 +38,5 @@ pub(super) fn part(
         fit,
     });
     let records: Vec<_> = records.collect();
-    page::part(path, of_calibration(report, &records, first))
+    page::part(path, of_calibration(report, &records))
 }

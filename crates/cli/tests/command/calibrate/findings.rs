@@ -190,13 +190,13 @@ fn two_records_are_one_calibration() {
     let both = report(&folder);
     assert_eq!((both.rows, both.runs.len()), (3000, 2));
     assert_eq!(
-        (&both.runs[1].record[..], &both.runs[1].bench[..]),
+        (&both.records[1].record[..], &both.records[1].bench[..]),
         ("two.csv", "free.toml")
     );
     assert!(both.runs[0].azimuth.is_none() && both.runs[1].azimuth.is_some());
     assert_eq!(both.verdict, FitVerdict::Consistent);
     assert!(
-        said.contains("\none.csv: 1500 rows over 1.04 days\ntwo.csv: 1500 rows"),
+        said.contains("\none.csv: 1500 rows over 1.04 days\n\ntwo.csv: 1500 rows"),
         "{said}"
     );
     assert!(said.contains("first record alone"), "{said}");
@@ -304,8 +304,9 @@ fn fast_records_are_averaged() {
     );
     assert_eq!(report.rows, 1440);
     assert_eq!(report.verdict, FitVerdict::Consistent);
-    let averaged = report.runs[0].averaged.unwrap();
-    assert_eq!((averaged.interval_s, averaged.rows_read), (60.0, 17_281));
+    let averaged = report.records[0].averaged.unwrap();
+    assert_eq!((averaged.interval_s, averaged.means), (60.0, 1440));
+    assert_eq!(report.records[0].rows, 17_281);
     for (found, (name, value, _)) in report.coefficients.iter().zip(truth().coefficients.named()) {
         let error = (found.estimate - value) / found.sigma;
         // As of the whole record above; without the attitude at the first row it would be tens.
@@ -349,7 +350,7 @@ fn one_pass_of_the_filter_is_there_on_request() {
 fn what_a_short_record_does_not_determine_is_named() {
     let folder = folder();
     folder.put("r.csv", cut(0, 40));
-    let said = folder.succeed(&JSON);
+    let said = unwrapped(&folder.succeed(&JSON));
     let report = report(&folder);
     assert!(!report.undetermined.is_empty());
     for combination in &report.undetermined {

@@ -1,0 +1,290 @@
+//! The first screen of a calibration.
+
+use gyrocal::EFFECTS;
+use gyrocal_answer::Parameter;
+use gyrocal_document::{Column, Screen, Standing, Table};
+use gyrocal_record::{
+    CalibrationReport, EffectTest, FitVerdict, FittedEffects, InputRole, NamedCause, NoiseEstimate,
+    NoiseRatio,
+};
+use gyrocal_statistics::format;
+
+use super::{has_several, is_correlated, latitude, record_line, tables};
+use crate::diagnosis::parameter_values;
+use crate::files::{few, first_input_files, record_and_bench};
+use crate::format::tested;
+
+/// Records that are told one by one.
+const RECORDS_SHOWN: usize = 2;
+/// Names of a list that are shown.
+const NAMES_SHOWN: usize = 4;
+
+/// Verdict, how sure it is, the nine coefficients, and what to run next.
+#[must_use]
+pub fn calibration_screen(report: &CalibrationReport) -> Screen {
+    let mut screen = verdict(report);
+    if report.verdict == FitVerdict::Setup {
+        for problem in &report.setup {
+            screen.fact("what is wrong", problem.text());
+        }
+        return screen;
+    }
+    let shown = report.effects.iter().filter(|one| !one.causes.is_empty());
+    for test in shown.take(RECORDS_SHOWN) {
+        causes(test, &mut screen);
+    }
+    screen.fact("how sure", how_sure(report));
+    if let Some(with) = &report.with_effects {
+        screen.fact("with it", fitted(with));
+    }
+    for problem in report.setup.iter().take(RECORDS_SHOWN) {
+        screen.fact("set-up mended", problem.placed());
+    }
+    match report.usable {
+        true => results(report, &mut screen),
+        false => screen.fact(
+            "what to do",
+            "check the units of [noise] and time, that up is positive, latitude and initial angles",
+        ),
+    }
+    for one in report.records.iter().take(RECORDS_SHOWN) {
+        screen.fact("record", record_line(one));
+    }
+    let more = report.records.len().saturating_sub(RECORDS_SHOWN);
+    if more > 0 {
+        screen.fact("and", format!("{more} more records"));
+    }
+    next(report, &mut screen);
+    screen
+}
+
+/// What to run next: the filter with the effects that were given, or the diagnosis.
+fn next(report: &CalibrationReport, screen: &mut Screen) {
+    let inputs = &report.manifest.inputs;
+    if let Some(effects) = report.with_effects.as_ref().and_then(terms) {
+        let is_strapdown = inputs
+            .iter()
+            .any(|one| one.role == Some(InputRole::GyroAxes));
+        let gyros = if is_strapdown {
+            " --gyros strapdown"
+        } else {
+            ""
+        };
+        let command = format!("gyrocal extend --effects {effects}{gyros} --out NAME.model.toml");
+        return screen.then(command, "the filter");
+    }
+    let why = match report.verdict {
+        FitVerdict::Consistent => "all tests, and what could go undetected",
+        _ => "looks for the causes",
+    };
+    let files = first_input_files(inputs).unwrap_or_else(|| record_and_bench(inputs));
+    screen.then(format!("gyrocal diagnose {files}"), why);
+}
+
+fn verdict(report: &CalibrationReport) -> Screen {
+    let of = match has_several(report) {
+        true => "the records show",
+        false => "the record shows",
+    };
+    let nominal = match report.with_effects {
+        None => "the model lacks: the coefficients may be biased",
+        Some(_) => "the nominal model lacks",
+    };
+    let (standing, verdict, what) = match report.verdict {
+        FitVerdict::Setup => (Standing::Bad, "SET-UP WRONG", report.verdict_text.clone()),
+        _ if !report.usable => (
+            Standing::Bad,
+            "NOT USABLE",
+            "the innovations are far larger than the noise: the coefficients are not usable"
+                .to_owned(),
+        ),
+        FitVerdict::EffectsFound => (
+            Standing::Bad,
+            "FAULT",
+            format!("{of} an effect that {nominal}"),
+        ),
+        FitVerdict::NotSettled => (
+            Standing::Bad,
+            "NOT SETTLED",
+            format!("{of} more than its diagnosis can name: the coefficients may be biased"),
+        ),
+        FitVerdict::TooLarge => (
+            Standing::Doubtful,
+            "MISFIT",
+            "the innovations are larger than the declared noise: the sigmas are too small"
+                .to_owned(),
+        ),
+        FitVerdict::TooSmall => (
+            Standing::Doubtful,
+            "MISFIT",
+            "the innovations are smaller than the declared noise: the sigmas are too large"
+                .to_owned(),
+        ),
+        FitVerdict::Unexplained => (
+            Standing::Bad,
+            "UNEXPLAINED",
+            "the innovations are not white, and no effect of the catalogue is significant"
+                .to_owned(),
+        ),
+        FitVerdict::NoiseDiffers => (
+            Standing::Doubtful,
+            "MISFIT",
+            format!(
+                "the noise differs from the declared ({}): the sigmas are not those of this noise",
+                noise_found(report).join(", ")
+            ),
+        ),
+        _ => (
+            Standing::Good,
+            "CALIBRATED",
+            "data, model and declared noise agree".to_owned(),
+        ),
+    };
+    Screen::new(standing, verdict, what)
+}
+
+/// What the diagnosis of a record names.
+fn causes(test: &EffectTest, screen: &mut Screen) {
+    let each = test.causes.iter().take(NAMES_SHOWN);
+    let each = each.map(|one: &NamedCause| {
+        let p = tested(one.p_value);
+        format!("{}, {:.1} sigma, search-corrected {p}", one.effect, one.z)
+    });
+    let each: Vec<String> = each.collect();
+    screen.fact("how large", each.join("; "));
+    let others = test.causes.iter().flat_map(|one| &one.alternatives);
+    let others: Vec<&str> = others.map(String::as_str).collect();
+    screen.fact("may also be", few(&others, NAMES_SHOWN));
+}
+
+fn how_sure(report: &CalibrationReport) -> String {
+    let (Some(mean), Some([low, high])) = (report.nis_mean, report.nis_band) else {
+        return String::new();
+    };
+    let is_clean = |one: &EffectTest| one.causes.is_empty() && one.settled;
+    let tests = &report.effects;
+    let effects = match !tests.is_empty() && tests.iter().all(is_clean) {
+        true if tests.iter().all(|one| one.white == Some(true)) => {
+            "; no effect of the catalogue is significant, innovations white"
+        }
+        true => "; no effect of the catalogue is significant",
+        false => "",
+    };
+    format!("mean NIS {mean:.3} (expected {low:.3} to {high:.3}){effects}")
+}
+
+/// The effects that were given, if a filter can have all of them.
+fn terms(with: &FittedEffects) -> Option<String> {
+    let ids: Vec<&str> = with.effects.iter().map(|one| &*one.effect).collect();
+    let is_term = |id: &&str| EFFECTS.iter().any(|one| one.id == *id && one.has_term());
+    ids.iter().all(is_term).then(|| ids.join(","))
+}
+
+/// Sizes of effects that were given, and what they gain.
+fn fitted(with: &FittedEffects) -> String {
+    let effects = with.effects.iter().map(|one| {
+        let parameters = one.parameters.iter().map(|own| Parameter {
+            name: own.name.clone(),
+            estimate: own.estimate,
+            sigma: own.sigma,
+            interval: own.interval.clone(),
+            unit: own.unit.clone(),
+        });
+        let parameters: Vec<Parameter> = parameters.collect();
+        format!("{}: {}", one.effect, parameter_values(&parameters))
+    });
+    let effects: Vec<String> = effects.collect();
+    format!("{}; {:+.1} nats", effects.join("; "), with.gained_nats)
+}
+
+/// What the noise audits of the records found.
+fn noise_found(report: &CalibrationReport) -> Vec<&str> {
+    let all = report.effects.iter().flat_map(|test| &test.noise);
+    let mut ids: Vec<&str> = all.map(String::as_str).collect();
+    ids.sort_unstable();
+    ids.dedup();
+    ids
+}
+
+fn results(report: &CalibrationReport, screen: &mut Screen) {
+    let open = report.coefficients.iter().filter(|one| !one.determined);
+    let open: Vec<&str> = open.map(|one| &*one.name).collect();
+    screen.fact("not determined", few(&open, NAMES_SHOWN));
+    for run in report.runs.iter().take(RECORDS_SHOWN) {
+        // Of several records the details have it.
+        if let Some(found) = run.noise.as_ref().filter(|_| !has_several(report)) {
+            screen.fact("noise", noise(found, is_correlated(report, &run.record)));
+        }
+        if run.azimuth.as_ref().is_some_and(|search| search.ambiguous) {
+            screen.fact(
+                "azimuth",
+                "ambiguous: give initial_angles_deg, or record for longer",
+            );
+        }
+    }
+    screen.fact("latitude", latitude_taken(report));
+    screen.table = Some(table(report));
+}
+
+/// Estimated over declared noise; of the gyros not where the noise of the accelerometers is correlated.
+fn noise(found: &NoiseEstimate, is_correlated: bool) -> String {
+    let list = |ratios: &[NoiseRatio; 3]| {
+        let each = ratios.map(|one| match one.is_observable() {
+            true => format!("{:.2}", one.ratio),
+            false => "?".to_owned(),
+        });
+        each.join(", ")
+    };
+    let accelerometers = list(&found.accel);
+    match is_correlated {
+        true => format!("of the declared one: accelerometers {accelerometers} times, correlated"),
+        false => format!(
+            "of the declared one: accelerometers {accelerometers}, gyros {} times",
+            list(&found.gyro)
+        ),
+    }
+}
+
+/// What an error of the latitude does.
+fn latitude_taken(report: &CalibrationReport) -> String {
+    let Some(latitude) = latitude(report) else {
+        return String::new();
+    };
+    if latitude.declared_sigma.is_some() {
+        return "its declared sigma is in the sigmas".to_owned();
+    }
+    tables::largest_bias(report, latitude).map_or_else(String::new, |(one, [_, in_sigmas])| {
+        format!(
+            "taken as exact: 1 arcsec would shift {} by {:.2} sigma",
+            one.name,
+            in_sigmas.abs()
+        )
+    })
+}
+
+fn table(report: &CalibrationReport) -> Table {
+    let with = report.with_effects.as_ref();
+    let mut columns = vec![Column::words("coefficient"), Column::words("estimate")];
+    columns.extend(with.map(|_| Column::words("with the effects")));
+    columns.push(Column::words(""));
+    let value = |estimate: f64, sigma: f64| format::estimate(estimate, sigma).join(" ± ");
+    let rows = report.coefficients.iter().enumerate().map(|(place, one)| {
+        let mut row = vec![
+            one.name.clone(),
+            format!("{} {}", value(one.estimate, one.sigma), one.unit),
+        ];
+        let with = with.and_then(|with| with.coefficients.get(place));
+        row.extend(with.map(|with| value(with.estimate, with.sigma)));
+        let meaning = tables::meaning(&one.name)
+            .split(':')
+            .next()
+            .unwrap_or_default();
+        row.push(match (one.determined, with) {
+            (false, _) => "not determined".to_owned(),
+            (true, None) => meaning.to_owned(),
+            (true, Some(_)) => String::new(),
+        });
+        row
+    });
+    Table::new("", columns, rows)
+}

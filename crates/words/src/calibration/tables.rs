@@ -1,0 +1,225 @@
+//! Tables of a calibration.
+
+use gyrocal::generated::platform::DRIFT;
+use gyrocal_document::{Column, Table};
+use gyrocal_record::{AXES, CalibrationReport, Coefficient, SiteReport, printable_line};
+use gyrocal_statistics::format;
+
+use super::has_several;
+
+/// Quantities of the site, in the order in which they are told.
+const QUANTITIES: [&str; 3] = ["latitude", "earth_rate", "gravity"];
+
+/// The coefficients, and with given effects in the model these, too.
+#[must_use]
+pub fn calibration_tables(report: &CalibrationReport) -> Vec<Table> {
+    if !report.usable {
+        return Vec::new();
+    }
+    let tables = [Some(coefficients(report)), with_effects(report)];
+    tables.into_iter().flatten().collect()
+}
+
+/// Effects that were given, turn-ons, sigmas from the first record alone, errors of the site.
+pub(super) fn further(report: &CalibrationReport) -> Vec<Table> {
+    let tables = [
+        given_effects(report),
+        turn_ons(report),
+        first_record(report),
+        site(report),
+    ];
+    tables.into_iter().flatten().collect()
+}
+
+fn value(estimate: f64, sigma: f64) -> String {
+    format::estimate(estimate, sigma).join(" ± ")
+}
+
+/// What a coefficient is.
+pub(super) fn meaning(name: &str) -> &'static str {
+    let mut all = DRIFT.iter();
+    all.find(|one| one.id == name).map_or("", |one| one.doc)
+}
+
+/// Whether a coefficient is a D_I.
+pub(super) fn is_mass_unbalance(name: &str) -> bool {
+    meaning(name).starts_with("D_I of")
+}
+
+fn coefficients(report: &CalibrationReport) -> Table {
+    let rows = report.coefficients.iter().map(|one| {
+        [
+            one.name.clone(),
+            format!("{} {}", value(one.estimate, one.sigma), one.unit),
+            if one.determined { "yes" } else { "no" }.to_owned(),
+            meaning(&one.name).to_owned(),
+        ]
+    });
+    let columns = ["coefficient", "estimate", "determined", "meaning"];
+    Table::new(
+        "Drift coefficients",
+        columns.map(Column::words).into(),
+        rows,
+    )
+}
+
+/// The coefficients with and without the effects that were given.
+fn with_effects(report: &CalibrationReport) -> Option<Table> {
+    let with = report.with_effects.as_ref()?;
+    let names: Vec<&str> = with.effects.iter().map(|one| &*one.effect).collect();
+    let title = format!(
+        "Coefficients with {} in the model, which gains {:.1} nats of log-likelihood",
+        names.join(", "),
+        with.gained_nats
+    );
+    let pairs = report.coefficients.iter().zip(&with.coefficients);
+    let coefficients = pairs.map(|(nominal, with)| {
+        [
+            nominal.name.clone(),
+            value(nominal.estimate, nominal.sigma),
+            value(with.estimate, with.sigma),
+            nominal.unit.clone(),
+        ]
+    });
+    let columns = vec![
+        Column::words("coefficient"),
+        Column::numbers("nominal model"),
+        Column::numbers("with these effects"),
+        Column::words("unit"),
+    ];
+    Some(Table::new(&title, columns, coefficients))
+}
+
+/// The parameters of the effects that were given.
+fn given_effects(report: &CalibrationReport) -> Option<Table> {
+    let with = report.with_effects.as_ref()?;
+    let effects = with.effects.iter().flat_map(|effect| {
+        effect.parameters.iter().map(|own| {
+            let pieces = own.interval.iter().flatten();
+            let pieces =
+                pieces.map(|ends| ends.map(|end| format::significant(end, 4)).join(" to "));
+            [
+                effect.effect.clone(),
+                own.name.clone(),
+                match own.sigma {
+                    Some(sigma) => value(own.estimate, sigma),
+                    None => format::significant(own.estimate, 4),
+                },
+                pieces.collect::<Vec<_>>().join(" or "),
+                own.unit.clone(),
+            ]
+        })
+    });
+    let columns = vec![
+        Column::words("effect"),
+        Column::words("parameter"),
+        Column::numbers("estimate"),
+        Column::numbers("95 % interval"),
+        Column::words("unit"),
+    ];
+    Some(Table::new("Effects in the model", columns, effects))
+}
+
+/// Offsets of the turn-ons from the mean constant drifts; `None` if turn-ons are declared alike.
+fn turn_ons(report: &CalibrationReport) -> Option<Table> {
+    let rows = report.runs.iter().filter_map(|run| {
+        let gyros = run.turn_on.as_ref()?;
+        let name = printable_line(&run.record).into_owned();
+        let gyros = gyros.iter().map(|one| value(one.estimate, one.sigma));
+        Some(core::iter::once(name).chain(gyros).collect::<Vec<_>>())
+    });
+    let rows: Vec<Vec<String>> = rows.collect();
+    let gyros = AXES.map(|axis| Column::numbers(&format!("gyro_{axis}.bias")));
+    let columns = core::iter::once(Column::words("record")).chain(gyros);
+    let title = "Offsets of the turn-ons from the mean constant drifts, deg/h";
+    (!rows.is_empty()).then(|| Table::new(title, columns.collect(), rows))
+}
+
+/// Sigmas from the first record alone and from all records; `None` of one record. Where turn-ons differ, constant
+/// drifts are left out: those of one record are not their means over turn-ons.
+fn first_record(report: &CalibrationReport) -> Option<Table> {
+    let alone = report.first_record_sigmas.as_ref()?;
+    let differ = report.runs.iter().any(|run| run.turn_on.is_some());
+    let pairs = report.coefficients.iter().zip(alone);
+    let rows = pairs.filter(|(one, _)| !(differ && one.name.ends_with(".bias")));
+    let rows = rows.map(|(one, alone)| {
+        [
+            one.name.clone(),
+            format::estimate(0.0, *alone)[1].clone(),
+            format::estimate(0.0, one.sigma)[1].clone(),
+            format!("{:.2}", one.sigma / alone),
+            one.unit.clone(),
+        ]
+    });
+    let columns = vec![
+        Column::words("coefficient"),
+        Column::numbers("first record alone"),
+        Column::numbers("all together"),
+        Column::numbers("ratio"),
+        Column::words("unit"),
+    ];
+    let title = "Sigmas from the first record alone and from all records";
+    Some(Table::new(title, columns, rows))
+}
+
+/// Biases of the coefficients by errors of the site; `None` for the streaming filter.
+fn site(report: &CalibrationReport) -> Option<Table> {
+    let mut sites: Vec<&SiteReport> = report.site.iter().collect();
+    sites.sort_by_key(|one| QUANTITIES.iter().position(|name| one.quantity == *name));
+    let heads = sites
+        .iter()
+        .flat_map(|one| [site_error(one), "in sigmas".to_owned()]);
+    let heads = heads.map(|head| Column::numbers(&head));
+    let columns = core::iter::once(Column::words("coefficient")).chain(heads);
+    let biases: Vec<_> = sites.iter().map(|one| biases(report, one)).collect();
+    let rows = report.coefficients.iter().enumerate().map(|(place, one)| {
+        let cells = biases.iter().flat_map(|all| {
+            let [bias, in_sigmas] = all[place];
+            [format!("{bias:+.1e}"), format!("{in_sigmas:+.2}")]
+        });
+        core::iter::once(one.name.clone())
+            .chain(cells)
+            .collect::<Vec<_>>()
+    });
+    let of = match has_several(report) {
+        true => "errors of the first record's site",
+        false => "site errors",
+    };
+    let title = format!(
+        "Sensitivity to {of}, which the residuals do not show: bias of each coefficient in its unit"
+    );
+    (!sites.is_empty()).then(|| Table::new(&title, columns.collect(), rows))
+}
+
+/// Name and size of the site error that biases are told for.
+fn site_error(one: &SiteReport) -> String {
+    let error = one.assumed_error;
+    let size = match &*one.quantity {
+        "latitude" => format!("latitude +{:.3} arcsec", 3600.0 * error),
+        "earth_rate" => format!("Earth rate +{error:.1e}"),
+        other => format!("{other} +{error:.1e}"),
+    };
+    match one.declared_sigma {
+        Some(_) => format!("{size} (1 sigma)"),
+        None => size,
+    }
+}
+
+/// Bias of each coefficient by the assumed error of a quantity of the site, in its unit and in sigmas.
+pub(super) fn biases(report: &CalibrationReport, site: &SiteReport) -> Vec<[f64; 2]> {
+    let each = report.coefficients.iter().zip(&site.bias_per_unit);
+    let each = each.map(|(one, per_unit)| {
+        let bias = per_unit * site.assumed_error;
+        [bias, bias / one.sigma]
+    });
+    each.collect()
+}
+
+/// The coefficient with the largest bias in sigmas, and its bias.
+pub(super) fn largest_bias<'a>(
+    report: &'a CalibrationReport,
+    site: &SiteReport,
+) -> Option<(&'a Coefficient, [f64; 2])> {
+    let all = report.coefficients.iter().zip(biases(report, site));
+    all.max_by(|(_, [_, one]), (_, [_, other])| one.abs().total_cmp(&other.abs()))
+}
