@@ -6,7 +6,6 @@ mod json;
 mod over_time;
 mod prose;
 mod screen;
-mod tables;
 
 use std::path::{Path, PathBuf};
 

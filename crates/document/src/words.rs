@@ -77,6 +77,18 @@ pub struct Column {
 }
 
 impl Column {
+    /// Columns by their heads, between `|`; `>` stands before those of numbers: `coefficient | > estimate`.
+    #[must_use]
+    pub fn heads(heads: &str) -> Vec<Self> {
+        let heads = heads.split('|').map(str::trim);
+        heads
+            .map(|head| match head.strip_prefix("> ") {
+                Some(head) => Self::numbers(head),
+                None => Self::words(head),
+            })
+            .collect()
+    }
+
     /// A column of words.
     #[must_use]
     pub fn words(head: &str) -> Self {

@@ -1,13 +1,13 @@
 //! The page of a calibration.
 
+mod details;
+
+use gyrocal::generated::platform::DRIFT;
 use gyrocal_calibration::{FittedPlatform, is_gross};
 use gyrocal_document::{
-    Cell, Column, EstimateRow, Estimates, Item, List, Part, Screen, Section, Standing, Table, Tint,
-    ValueWithSigma,
+    Column, EstimateRow, Estimates, Item, List, Part, Screen, Section, Standing, Table, Tint,
 };
-use gyrocal_record::{
-    Bench, CalibrationReport, Coefficient, FitVerdict, NoiseReport, Record, RunReport,
-};
+use gyrocal_record::{Bench, CalibrationReport, Coefficient, FitVerdict, Record};
 use gyrocal_statistics::format;
 use gyrocal_words::{first_input_files, record_and_bench};
 
@@ -42,28 +42,7 @@ pub fn of_calibration(
     for (place, one) in records.iter().enumerate() {
         sections.extend(over_time(one, (records.len() > 1).then_some(place))?);
     }
-    if !report.coefficients.is_empty() {
-        sections.push(estimates(report));
-    }
-    sections.extend(undetermined(report));
-    if let Some(first) = records.first() {
-        sections.push(coefficients::site(first.fit)?);
-    }
-    let runs: Vec<Item> = runs(report).into_iter().map(Item::from).collect();
-    if !runs.is_empty() {
-        sections.push(section(
-            "records",
-            "Records",
-            "Attitude and noise of each record; noise is estimated by maximum likelihood.",
-            runs,
-        ));
-    }
-    sections.push(section(
-        "words",
-        "In words",
-        "The verdict with the tests that it rests on.",
-        vec![Item::text(&*report.verdict_text)],
-    ));
+    sections.extend(calibration_sections(report));
     Ok(Part {
         name: match report.runs.len() {
             0 | 1 => file_name(&report.manifest, 0, "record"),
@@ -78,6 +57,28 @@ pub fn of_calibration(
         sections,
         origin: origin(&report.manifest),
     })
+}
+
+/// The sections of a written calibration: what it tells without the records. One that is not usable has its
+/// verdict alone.
+#[must_use]
+pub fn calibration_sections(report: &CalibrationReport) -> Vec<Section> {
+    let verdict = section(
+        "words",
+        "In words",
+        "The verdict with the tests that it rests on.",
+        vec![Item::text(&*report.verdict_text)],
+    );
+    if report.coefficients.is_empty() || report.nis_mean.is_some_and(is_gross) {
+        return vec![verdict];
+    }
+    let mut sections = vec![estimates(report)];
+    sections.extend(undetermined(report));
+    sections.push(details::site(report));
+    sections.extend(details::turn_ons(report));
+    sections.extend(details::records(report));
+    sections.push(verdict);
+    sections
 }
 
 /// The first screen of a written calibration: what it tells without the records.
@@ -169,18 +170,14 @@ fn over_time(
 
 fn estimates(report: &CalibrationReport) -> Section {
     let with = report.with_effects.as_ref();
-    let value = |one: &Coefficient| ValueWithSigma {
-        value: one.estimate,
-        sigma: one.sigma,
-    };
+    let value = |one: &Coefficient| [one.estimate, one.sigma];
     let rows = report.coefficients.iter().enumerate().map(|(place, one)| {
         let extended = with.and_then(|with| with.coefficients.get(place));
+        let values = core::iter::once(one).chain(extended);
         EstimateRow {
-            name: one.name.clone(),
-            unit: one.unit.clone(),
-            values: core::iter::once(one).chain(extended).map(value).collect(),
             note: if one.determined { "yes" } else { "no" }.to_owned(),
             strong: !one.determined,
+            ..EstimateRow::new(&one.name, &one.unit, values.map(value))
         }
     });
     let mut models = vec![("nominal model".to_owned(), Tint::Nominal)];
@@ -193,16 +190,25 @@ fn estimates(report: &CalibrationReport) -> Section {
             .as_ref()
             .map(|names| (format!("with {names}"), Tint::Extended)),
     );
+    let estimates = Estimates {
+        title: "Drift coefficients".to_owned(),
+        models,
+        rows: rows.collect(),
+        note_head: "determined".to_owned(),
+    };
+    let mut items = vec![
+        Item::Estimates(estimates),
+        Item::text(details::determined(report)),
+    ];
+    items.extend(with.into_iter().flat_map(details::with_effects));
+    let columns = Column::heads("coefficient | meaning");
+    let meanings = DRIFT.map(|one| [one.id, one.doc].map(str::to_owned));
+    items.push(Table::new("What they are", columns, meanings).into());
     section(
         "coefficients",
         "Coefficients",
         "The nine drift coefficients with their standard deviations.",
-        vec![Item::Estimates(Estimates {
-            title: "Drift coefficients".to_owned(),
-            models,
-            rows: rows.collect(),
-            note_head: "determined".to_owned(),
-        })],
+        items,
     )
 }
 
@@ -226,59 +232,4 @@ fn undetermined(report: &CalibrationReport) -> Option<Section> {
             })],
         )
     })
-}
-
-fn runs(report: &CalibrationReport) -> Vec<Table> {
-    let angles = |deg: [f64; 3]| {
-        deg.map(|angle| format!("{angle:.3}"))
-            .join(", ")
-            .replace('-', "−")
-    };
-    let mut attitudes = Vec::new();
-    let mut noises = Vec::new();
-    for run in &report.runs {
-        attitudes.push(vec![
-            Cell::from(run.record.clone()),
-            Cell::from(run.rows.to_string()),
-            Cell::from(angles(run.initial_angles_deg)),
-            Cell::from(angles(run.final_angles_deg)),
-        ]);
-        noises.extend(run.noise.as_ref().map(|noise| noise_row(run, noise)));
-    }
-    let mut tables = vec![Table {
-        title: "Attitude: angles about x, y, z".to_owned(),
-        columns: vec![
-            Column::words("record"),
-            Column::numbers("rows"),
-            Column::numbers("first row, deg"),
-            Column::numbers("last row, deg"),
-        ],
-        rows: attitudes,
-    }];
-    tables.push(Table {
-        title: "Estimated over declared noise: x, y, z".to_owned(),
-        columns: vec![
-            Column::words("record"),
-            Column::numbers("accelerometers"),
-            Column::numbers("gyros"),
-        ],
-        rows: noises,
-    });
-    tables.retain(|table| !table.rows.is_empty());
-    tables
-}
-
-fn noise_row(run: &RunReport, noise: &NoiseReport) -> Vec<Cell> {
-    let ratios = |of: &[gyrocal_record::NoiseRatioReport; 3]| {
-        let each = of.iter().map(|one| {
-            let [low, high] = one.interval;
-            format!("{:.3} ({low:.3} to {high:.3})", one.ratio)
-        });
-        Cell::from(each.collect::<Vec<_>>().join(", "))
-    };
-    vec![
-        Cell::from(run.record.clone()),
-        ratios(&noise.accel),
-        ratios(&noise.gyro),
-    ]
 }

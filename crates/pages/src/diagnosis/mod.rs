@@ -79,17 +79,11 @@ fn part(result: &Answer, sections: Vec<Section>) -> Part {
     }
 }
 
-/// The whole answer as the command prints it.
+/// The whole answer as the command prints it, without the tables that the other sections have.
 fn in_words(result: &Answer) -> Section {
-    Section {
-        id: "words".to_owned(),
-        title: "In words".to_owned(),
-        lead: "The answer as the command prints it, with all its tables.".to_owned(),
-        items: gyrocal_words::diagnosis(result)
-            .into_iter()
-            .map(Item::Words)
-            .collect(),
-    }
+    let told = gyrocal_words::told(result).into_iter();
+    let lead = "The answer as the command prints it.";
+    section("words", "In words", lead, told.map(Item::Words).collect())
 }
 
 /// Effects in the extended model.

@@ -1,7 +1,7 @@
 //! What a record of a plant cannot tell.
 
 use gyrocal_answer::Answer;
-use gyrocal_document::{Cell, Column, Item, List, Section, Table};
+use gyrocal_document::{Column, Item, List, Section, Table};
 
 use crate::diagnosis::section;
 use crate::unlisted::unlisted;
@@ -34,18 +34,10 @@ pub(super) fn cannot_tell(answer: &Answer) -> Section {
             .collect(),
     ));
     if !answer.not_searched.is_empty() {
-        let column = |head: &str| Column {
-            head: head.to_owned(),
-            is_number: false,
-        };
         let rows = answer.not_searched.iter();
-        items.push(Item::from(Table {
-            title: "Effects that were not tested".to_owned(),
-            columns: vec![column("effect"), column("reason")],
-            rows: rows
-                .map(|one| vec![Cell::from(one.effect.clone()), Cell::from(one.why.clone())])
-                .collect(),
-        }));
+        let rows = rows.map(|one| [one.effect.clone(), one.why.clone()]);
+        let columns = Column::heads("effect | reason");
+        items.push(Table::new("Effects that were not tested", columns, rows).into());
     }
     if items.is_empty() {
         let all = match answer.is_settled() {
