@@ -38,6 +38,16 @@ pub struct List {
     pub entries: Vec<String>,
 }
 
+impl List {
+    /// A list; `None` without entries.
+    #[must_use]
+    pub fn of(title: &str, entries: impl IntoIterator<Item = String>) -> Option<Self> {
+        let entries: Vec<String> = entries.into_iter().collect();
+        let title = title.to_owned();
+        (!entries.is_empty()).then_some(Self { title, entries })
+    }
+}
+
 /// A table.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 pub struct Table {

@@ -18,14 +18,7 @@ pub fn all(fleet: &FleetResult) -> Vec<Words> {
         Words::Paragraph(size(fleet)),
         Words::Paragraph(verdict(fleet)),
     ];
-    let list = |title: &str, entries: Vec<String>| {
-        (!entries.is_empty()).then(|| {
-            Words::List(List {
-                title: title.to_owned(),
-                entries,
-            })
-        })
-    };
+    let list = |title: &str, entries: Vec<String>| List::of(title, entries).map(Words::List);
     let recurring = fleet.recurring.iter().map(recurring).collect();
     blocks.extend(list(
         "Causes that recur below what units show by themselves",

@@ -220,16 +220,13 @@ fn undetermined(report: &CalibrationReport) -> Option<Section> {
             one.text
         )
     });
-    let entries: Vec<String> = entries.collect();
-    (!entries.is_empty()).then(|| {
-        section(
-            "limits",
-            "What cannot be told apart",
-            "Combinations of coefficients, each over its prior sigma, of which the record says little.",
-            vec![Item::from(List {
-                title: String::new(),
-                entries,
-            })],
-        )
-    })
+    let lead =
+        "Combinations of coefficients, each over its prior sigma, of which the record says little.";
+    let list = List::of("", entries)?.into();
+    Some(section(
+        "limits",
+        "What cannot be told apart",
+        lead,
+        vec![list],
+    ))
 }

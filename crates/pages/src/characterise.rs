@@ -37,14 +37,9 @@ fn failures(reports: &[CellReport]) -> Option<Section> {
         let more = (more > 0).then(|| format!("{}: {more} more records failed", report.cell));
         first.chain(more)
     });
-    let entries: Vec<String> = entries.collect();
-    let list = List {
-        title: String::new(),
-        entries,
-    };
     let lead = "Records on which the diagnosis failed.";
-    (!list.entries.is_empty())
-        .then(|| section("failures", "Failed records", lead, vec![list.into()]))
+    let list = List::of("", entries)?.into();
+    Some(section("failures", "Failed records", lead, vec![list]))
 }
 
 fn figures(reports: &[CellReport]) -> Section {

@@ -177,24 +177,13 @@ fn consistency(summary: &CalibrationSummary) -> Section {
 }
 
 fn failures(summary: &CalibrationSummary) -> Option<Section> {
-    let entries: Vec<String> = summary
-        .failures
-        .iter()
-        .take(FAILURES_SHOWN)
-        .map(|failure| format!("seed {}: {}", failure.seed, failure.message))
-        .collect();
-    let title = format!(
-        "The first of {} runs without a calibration",
-        summary.failures.len()
-    );
-    (!entries.is_empty()).then(|| {
-        section(
-            "failures",
-            "Failed runs",
-            "Each seed can be simulated by itself: simulate --seed.",
-            vec![Item::from(List { title, entries })],
-        )
-    })
+    let failures = &summary.failures;
+    let first = failures.iter().take(FAILURES_SHOWN);
+    let entries = first.map(|one| format!("seed {}: {}", one.seed, one.message));
+    let title = format!("The first of {} runs without a calibration", failures.len());
+    let list = List::of(&title, entries)?.into();
+    let lead = "Each seed can be simulated by itself: simulate --seed.";
+    Some(section("failures", "Failed runs", lead, vec![list]))
 }
 
 #[cfg(test)]

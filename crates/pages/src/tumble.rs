@@ -93,12 +93,10 @@ fn terms(answer: &TumbleAnswer<'_>, report: &MultiPositionReport) -> Section {
                 rows,
             )
             .into(),
-            List {
-                title: "What else each may be, with what its log-likelihood lacks".to_owned(),
-                entries: report.findings.iter().map(rivals).collect(),
-            }
-            .into(),
         ];
+        let title = "What else each may be, with what its log-likelihood lacks";
+        let list = List::of(title, report.findings.iter().map(rivals));
+        items.extend(list.map(Item::from));
     }
     if !report.not_confirmed.is_empty() {
         items.push(Item::text(format!(
@@ -299,23 +297,15 @@ fn few_terms(answer: &TumbleAnswer<'_>, report: &FewPositionReport) -> Section {
     let columns = Column::heads("term | > estimate ± σ | unit | > p, family-wise");
     let others = report.findings.iter();
     let others = others.map(|one| alternatives(&one.effect, &one.alternatives));
-    let items = match &*report.findings {
-        [] => vec![no_term(answer)],
-        _ => vec![
+    let items = match List::of("What else each may be", others) {
+        None => vec![no_term(answer)],
+        Some(list) => vec![
             Table::new("Significant terms", columns, rows).into(),
-            List {
-                title: "What else each may be".to_owned(),
-                entries: others.collect(),
-            }
-            .into(),
+            list.into(),
         ],
     };
-    section(
-        "terms",
-        TERMS,
-        "Judged by the standard errors of the stops.",
-        items,
-    )
+    let lead = "Judged by the standard errors of the stops.";
+    section("terms", TERMS, lead, items)
 }
 
 fn few_laws(answer: &TumbleAnswer<'_>, report: &FewPositionReport) -> Section {
