@@ -23,7 +23,7 @@ pub use limits::{
     why_not_distinguished, would_distinguish,
 };
 pub use records::files;
-pub use tables::{over_sets, residuals, shifts};
+pub use tables::{over_sets, ranking, residuals, shifts};
 pub use tests::residual_description;
 pub use verdict::{not_settled, setup};
 

@@ -17,7 +17,7 @@ pub mod plant;
 pub use diagnosis::{
     SET_UPS_WITHOUT_ANGLES, diagnosis, explained, files, first_screen, groups, is_correlation,
     likelihood, may_also_be, near_twins, not_settled, not_tested, over_sets, parameter_values,
-    residual_description, residuals, setup, shifts, tested, time_is_temperature, told,
+    ranking, residual_description, residuals, setup, shifts, tested, time_is_temperature, told,
     typical_size, why_not_distinguished, would_distinguish,
 };
 pub use files::{command_files, few, first_input_files, input_files, record_and_bench};

@@ -168,7 +168,9 @@ fn of_nominal(shown: &Residuals, duration_h: f64) -> Table {
     )
 }
 
-fn ranking(result: &Answer) -> Option<Table> {
+/// The first effects of the search by their statistics; `None` without a search.
+#[must_use]
+pub fn ranking(result: &Answer) -> Option<Table> {
     let all = &result.ranking;
     let threshold = result.threshold.map_or_else(String::new, |threshold| {
         format!("; detection threshold {threshold:.1}")
