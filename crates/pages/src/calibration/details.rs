@@ -65,7 +65,7 @@ pub(super) fn with_effects(with: &FittedEffects) -> [Item; 2] {
 
 /// Attitude and noise of each record; `None` without one.
 pub(super) fn records(report: &CalibrationReport) -> Option<Section> {
-    let angles = |deg: [f64; 3]| deg.map(|angle| format!("{angle:.4}")).join(", ");
+    let angles = |deg: [f64; 3]| deg.map(|angle| format!("{angle:.4}")).join(", ") + " deg";
     let rows = report.runs.iter().map(|run| {
         [
             run.record.clone(),
@@ -74,7 +74,7 @@ pub(super) fn records(report: &CalibrationReport) -> Option<Section> {
             angles(run.final_angles_deg),
         ]
     });
-    let columns = Column::heads("record | > rows | > first row, deg | > last row, deg");
+    let columns = Column::heads("record | > rows | > first row | > last row");
     let title = "Attitude against east, north, up: angles about x, y, z";
     let mut items = vec![Item::from(Table::new(title, columns, rows))];
     items.extend(report.runs.iter().filter_map(azimuth).map(Item::text));
@@ -89,7 +89,8 @@ pub(super) fn records(report: &CalibrationReport) -> Option<Section> {
     });
     let columns = Column::heads("record | > accelerometers | > gyros");
     if !noises.is_empty() {
-        items.push(Table::new("Estimated over declared noise: x, y, z", columns, rows).into());
+        let title = "Estimated over declared noise with its 95 % interval: x, y, z";
+        items.push(Table::new(title, columns, rows).into());
     }
     items.extend(noises.iter().map(|(run, noise)| {
         Item::text(match is_correlated(report, run) {
