@@ -1,26 +1,20 @@
 //! `gyrocal allan`: Allan deviations with confidence intervals of columns of a log.
 
-mod screen;
-
-use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use comfy_table::Cell;
 use gyrocal_instruments::{
-    AllanColumn, AllanReport, AllanSettings, Description, InstrumentError, Log, ResultFile,
-    allan_columns, allan_log,
+    AllanReport, AllanSettings, Description, InstrumentError, Log, ResultFile, allan_columns,
+    allan_log,
 };
-use gyrocal_pages::{AllanAnswer, of_allan};
+use gyrocal_pages::of_allan;
 use gyrocal_record::{Outputs, SourceText};
-use gyrocal_statistics::allan::{AllanEstimator, NoiseFit};
-use gyrocal_statistics::format;
+use gyrocal_statistics::allan::AllanEstimator;
 
 use crate::measured::unusable;
 use crate::numbers::{positive, probability};
 use crate::outputs::{self, manifest};
 use crate::page::Views;
-use crate::tables::{right, table};
 use crate::{Failure, Reply};
 
 /// Allan deviation of columns of a log, and the parts of their noise.
@@ -100,48 +94,29 @@ pub(crate) fn run(arguments: &AllanArguments) -> Result<Reply, Failure> {
     let json = arguments.json.as_deref();
     outputs::check(&inputs, json, arguments.views.figures())?;
     arguments.views.check(&inputs, &[("--json", json)])?;
-    let analysed = analysed(arguments).map_err(|error| unusable(&arguments.log, error))?;
-    let first = screen::first(&analysed);
-    let mut answer = Reply::of(first.clone(), summary(arguments, &analysed));
+    let (report, clock) = analysed(arguments).map_err(|error| unusable(&arguments.log, error))?;
+    let manifest = manifest("", 0, &inputs)?;
+    let part = of_allan(&manifest, &report, clock.as_deref());
+    let mut answer = Reply::of_part(&part);
     let mut outputs = Outputs::new();
-    if arguments.views.are_asked() {
-        let shown = AllanAnswer {
-            manifest: &manifest("", 0, &inputs)?,
-            columns: &analysed.columns,
-            unit: &analysed.unit,
-            estimator: arguments.estimator.of_library().description(),
-            confidence: arguments.confidence,
-        };
-        let part = of_allan(&shown, first);
-        arguments
-            .views
-            .stage(&arguments.log, part, &mut outputs, &mut answer)?;
-    }
+    let views = &arguments.views;
+    views.stage(&arguments.log, part, &mut outputs, &mut answer)?;
     if let Some(path) = &arguments.json {
-        let result = AllanReport {
-            unit: analysed.unit,
-            confidence: arguments.confidence,
-            estimator: arguments.estimator.of_library().description(),
-            columns: analysed.columns,
-        };
-        let result = ResultFile::new(manifest("", 0, &inputs)?, result);
-        outputs.stage_json(path, &result)?;
-    }
-    outputs.commit()?;
-    if let Some(path) = &arguments.json {
+        outputs.stage_json(path, &ResultFile::new(manifest, report))?;
         answer.wrote(path, "the result for programs");
     }
+    outputs.commit()?;
     Ok(answer)
 }
 
-/// Analysed columns with their unit, and what there is to tell of the clock.
-struct Analysed {
-    columns: Vec<AllanColumn>,
-    unit: String,
-    clock: Option<String>,
-}
-
-fn analysed(arguments: &AllanArguments) -> Result<Analysed, InstrumentError> {
+/// Analysed columns, and what there is to tell of the clock.
+fn analysed(arguments: &AllanArguments) -> Result<(AllanReport, Option<String>), InstrumentError> {
+    let report = |unit: &str, columns| AllanReport {
+        unit: unit.to_owned(),
+        confidence: arguments.confidence,
+        estimator: arguments.estimator.of_library().description(),
+        columns,
+    };
     let settings = |rate_hz: f64, scale: f64| AllanSettings {
         rate_hz,
         scale,
@@ -153,11 +128,8 @@ fn analysed(arguments: &AllanArguments) -> Result<Analysed, InstrumentError> {
         let source = SourceText::read(&arguments.log)?;
         // Required without a description.
         let settings = settings(arguments.rate_hz.unwrap_or(1.0), arguments.scale);
-        return Ok(Analysed {
-            columns: allan_columns(&source, &names, &settings)?,
-            unit: arguments.unit.clone(),
-            clock: None,
-        });
+        let columns = allan_columns(&source, &names, &settings)?;
+        return Ok((report(&arguments.unit, columns), None));
     };
     let log = Log::read(&arguments.log, &Description::read(path)?)?;
     let (scale, unit) = match log.gyro_in_counts {
@@ -165,84 +137,6 @@ fn analysed(arguments: &AllanArguments) -> Result<Analysed, InstrumentError> {
         false => (3600.0 * 1.0_f64.to_degrees(), "deg/h"),
     };
     let settings = settings(1.0 / log.interval_s, scale);
-    Ok(Analysed {
-        columns: allan_log(&log, ["gyro_x", "gyro_y", "gyro_z"], &settings)?,
-        unit: unit.to_owned(),
-        clock: log.clock.note(),
-    })
-}
-
-fn summary(arguments: &AllanArguments, analysed: &Analysed) -> String {
-    let mut text = String::new();
-    if let Some(note) = &analysed.clock {
-        let _ = writeln!(text, "{note}\n");
-    }
-    for column in &analysed.columns {
-        let mut table = table(["tau [s]", "deviation", "low", "high", "freedom", "noise"]);
-        for point in &column.points {
-            table.add_row([
-                right(format!("{:.4}", point.tau_s)),
-                right(format!("{:.4e}", point.deviation)),
-                right(format!("{:.4e}", point.low)),
-                right(format!("{:.4e}", point.high)),
-                right(format!("{:.1}", point.degrees_of_freedom)),
-                Cell::new(point.noise),
-            ]);
-        }
-        let _ = writeln!(
-            text,
-            "{}: {} [{}], confidence {}\n\n{}\n\n{}",
-            column.name,
-            arguments.estimator.of_library().description(),
-            analysed.unit,
-            arguments.confidence,
-            table.trim_fmt(),
-            parts(column.noise.as_ref(), &analysed.unit),
-        );
-    }
-    text
-}
-
-/// The coefficients with their intervals, and the test of fit.
-fn parts(noise: Option<&NoiseFit>, unit: &str) -> String {
-    let Some(noise) = noise else {
-        return "Parts of the noise: too few averaging times for a fit.\n".to_owned();
-    };
-    let mut table = table(["part", "coefficient", "95 % interval", "unit"]);
-    for coefficient in &noise.coefficients {
-        let part = coefficient.part;
-        let (estimate, interval) = match (coefficient.estimate, coefficient.interval) {
-            (Some(estimate), Some([low, high])) if low > 0.0 => (
-                format!("{estimate:.3e}"),
-                format!("{low:.3e} to {high:.3e}"),
-            ),
-            (Some(_), Some([_, high])) => ("not visible".to_owned(), format!("below {high:.3e}")),
-            _ => ("not determined".to_owned(), String::new()),
-        };
-        table.add_row([
-            Cell::new(part.description()),
-            right(estimate),
-            right(interval),
-            Cell::new(format!("{unit}{}", part.unit_suffix())),
-        ]);
-    }
-    let [from_s, to_s] = noise.range_s;
-    let mut text = format!(
-        "{}\n\nFitted from {from_s:.4} to {to_s:.4} s; test of fit: {}. The flat part of a bias \
-         instability B is 0.664 B.\n",
-        table.trim_fmt(),
-        format::p_value(noise.p_value),
-    );
-    if noise.correlated_samples {
-        text.push_str(
-            "The samples are correlated for a short time, as by a filter or dither: shorter averaging \
-             times are left\nout, and quantisation is not distinguishable from the filter.\n",
-        );
-    } else if !noise.is_described() {
-        text.push_str(
-            "The noise is no sum of these parts at any range of averaging times: no coefficient is \
-             determined. Look for\nvibration, jumps, or a change of temperature.\n",
-        );
-    }
-    text
+    let columns = allan_log(&log, ["gyro_x", "gyro_y", "gyro_z"], &settings)?;
+    Ok((report(unit, columns), log.clock.note()))
 }

@@ -15,20 +15,18 @@ use gyrocal_calibration::{
 use gyrocal_diagnosis::{
     CalibrationVerdict, DiagnoseOptions, calibration_verdict, diagnose_calibrated, fit_effects,
 };
-use gyrocal_document::Words;
 use gyrocal_pages::of_calibration;
 use gyrocal_record::{
     CalibrationMethod, EffectTest, FittedEffects, InputRole, Outputs, printable_path,
 };
 use gyrocal_setup::PlatformKind;
-use gyrocal_words::{calibration, calibration_screen, calibration_tables};
 use miette::miette;
 
 use crate::numbers::positive;
 use crate::outputs;
 use crate::page::{self, Views};
 use crate::progress::Progress;
-use crate::{Failure, Reply, exit, gyro_axes, records, text_of};
+use crate::{Failure, Reply, exit, gyro_axes, records};
 pub use failed::NotCalibrated;
 use failed::WrongSetup;
 use inputs::Measurement;
@@ -232,9 +230,10 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Reply, Failure> {
         gyro_axes,
     };
     let report = json::report(&found, &inputs)?;
-    let tables = calibration_tables(&report).into_iter().map(Words::Table);
-    let words: Vec<Words> = calibration(&report).into_iter().chain(tables).collect();
-    let mut answer = Reply::of(calibration_screen(&report), text_of(&words));
+    let mut answer = Reply::of_part(&page::part(
+        &arguments.records[0],
+        of_calibration(&report, &[]),
+    )?);
     let mut outputs = Outputs::new();
     if arguments.views.are_asked() {
         let (record, views) = (&arguments.records[0], &arguments.views);

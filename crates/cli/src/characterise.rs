@@ -1,7 +1,6 @@
 //! `gyrocal characterise`: operating characteristics of the diagnosis and of baseline methods.
 
-mod screen;
-mod sheet;
+mod markdown;
 
 use std::num::NonZeroUsize;
 use std::ops::Range;
@@ -12,6 +11,7 @@ use gyrocal::generated::MODEL_HASH;
 use gyrocal_evaluation::{
     BaselineMethod, CellReport, CharacteriseReport, PopulationCell, cell_campaign, cell_report,
 };
+use gyrocal_pages::of_characterise;
 use gyrocal_record::{SCHEMA_VERSION, printable_path, write_json, write_whole};
 use miette::miette;
 
@@ -87,21 +87,22 @@ pub(crate) fn run(arguments: &CharacteriseArguments) -> Result<Reply, Failure> {
             reports.push(report(arguments, *cell, &methods)?);
         }
     }
-    let mut answer = Reply::of(screen::first(&reports), sheet::text(&reports));
-    if arguments.exit_code && !reports.iter().all(CellReport::holds) {
+    let report = CharacteriseReport {
+        schema_version: SCHEMA_VERSION,
+        manifest: manifest(MODEL_HASH, arguments.seed, &[])?,
+        cells: reports,
+    };
+    let part = of_characterise(&report);
+    let mut answer = Reply::of_part(&part);
+    if arguments.exit_code && !report.cells.iter().all(CellReport::holds) {
         answer.exit_code = exit::FOUND;
     }
-    let manifest = manifest(MODEL_HASH, arguments.seed, &[])?;
     if let Some(path) = &arguments.markdown {
-        write_whole(path, sheet::page(&reports, &manifest.command).as_bytes())?;
+        let page = markdown::page(&part.sections, &report.manifest.command);
+        write_whole(path, page.as_bytes())?;
         answer.wrote(path, "the tables as Markdown");
     }
     if let Some(path) = &arguments.json {
-        let report = CharacteriseReport {
-            schema_version: SCHEMA_VERSION,
-            manifest,
-            cells: reports,
-        };
         write_json(path, &report)?;
         answer.wrote(path, "the result for programs");
     }

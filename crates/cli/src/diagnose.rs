@@ -15,7 +15,6 @@ use gyrocal_diagnosis::{
 use gyrocal_pages::{of_diagnosis, of_result};
 use gyrocal_record::{Bench, InputRole, Outputs, printable_path};
 
-use crate::layout::layout;
 use crate::numbers::probability;
 use crate::outputs::{self, manifest_of, same_file};
 use crate::page::{self, Views};
@@ -247,10 +246,7 @@ fn stopped(
     inputs: &[(InputRole, &Path)],
 ) -> Result<Reply, Failure> {
     result.manifest = manifest_of(MODEL_HASH, result.manifest.seed, inputs)?;
-    let mut answer = Reply::of(
-        gyrocal_words::first_screen(&result),
-        layout(&gyrocal_words::diagnosis(&result)),
-    );
+    let mut answer = Reply::of_answer(&result);
     let mut outputs = Outputs::new();
     if let Some(path) = arguments.views.report() {
         page::stage(path, vec![of_result(&result)], &mut outputs)?;
@@ -275,10 +271,7 @@ fn answer(
     diagnosis: &Diagnosis<'_>,
 ) -> Result<Reply, Failure> {
     let result = &diagnosis.result;
-    let mut answer = Reply::of(
-        gyrocal_words::first_screen(result),
-        layout(&gyrocal_words::diagnosis(result)),
-    );
+    let mut answer = Reply::of_answer(result);
     let mut outputs = Outputs::new();
     if arguments.views.are_asked() {
         let part = page::part(record, of_diagnosis(diagnosis, bench))?;

@@ -1,17 +1,16 @@
 //! `gyrocal effects`: the catalogue of effects, from the generated table.
 
 use clap::Args;
-use comfy_table::Cell;
 use gyrocal::effect::Enters;
 use gyrocal::{EFFECTS, Effect};
-use gyrocal_document::{Screen, Standing};
+use gyrocal_document::{Column, Screen, Standing, Table};
 use gyrocal_record::{any_of, nearest_names, printable_line};
 use gyrocal_words::{explained, tested, typical_size};
 use miette::miette;
 
 use crate::Failure;
+use crate::layout::drawn;
 use crate::reply::Reply;
-use crate::tables::{right, table};
 
 /// List the effects that a diagnosis knows, or explain one.
 ///
@@ -103,14 +102,15 @@ fn overview() -> Screen {
 
 /// A table of effects with name and unit.
 fn listed(effects: impl Iterator<Item = &'static Effect>) -> String {
-    let mut table = table(["id", "typical size", "tested", "meaning"]);
-    for effect in effects {
-        table.add_row([
-            Cell::new(effect.id),
-            right(typical_size(effect)),
-            Cell::new(tested(effect)),
-            Cell::new(effect.name),
-        ]);
-    }
-    format!("{}\n", table.trim_fmt())
+    let rows = effects.map(|effect| {
+        let (size, tested) = (typical_size(effect), tested(effect));
+        [
+            effect.id.to_owned(),
+            size,
+            tested.to_string(),
+            effect.name.to_owned(),
+        ]
+    });
+    let columns = Column::heads("id | > typical size | tested | meaning");
+    format!("{}\n", drawn(&Table::new("", columns, rows)))
 }

@@ -143,13 +143,11 @@ fn summary(arguments: &ExtendArguments, extension: &Extension) -> Reply {
         );
     }
     for estimate in &model.estimates {
-        screen.fact(
-            "start value",
-            format!(
-                "{} starts at {:.3e} ± {:.1e}",
-                estimate.parameter, estimate.value, estimate.sigma
-            ),
+        let words = format!(
+            "{} starts at {:.3e} ± {:.1e}",
+            estimate.parameter, estimate.value, estimate.sigma
         );
+        screen.fact("start value", words);
     }
     for (id, value) in &model.shapes {
         screen.fact("built in", format!("{id} is {value}"));

@@ -1,15 +1,54 @@
 //! Layout of an answer for a terminal: lines, lists and tables.
 
-use comfy_table::Cell;
-use gyrocal_document::{Table, Words};
+use comfy_table::{Cell, CellAlignment, ContentArrangement, LineStyle, TableStyle};
+use gyrocal_document::{Column, Estimates, Item, Section, Table, Words};
+use gyrocal_statistics::format;
 
-use crate::tables::{right, table};
 use crate::text::{bullet, indented, paragraph};
+use crate::width;
 
 /// An answer in words, an empty line between any two pieces.
 pub(crate) fn layout(pieces: &[Words]) -> String {
     let texts: Vec<String> = pieces.iter().map(piece).collect();
     texts.join("\n")
+}
+
+/// What is read of sections: all but charts and bars, which pages and pictures have.
+pub(crate) fn sections(sections: &[Section]) -> String {
+    let texts = sections.iter().filter_map(|section| {
+        let items = section.items.iter().filter_map(|item| match item {
+            Item::Words(words) => Some(piece(words)),
+            Item::Estimates(estimates) => Some(piece(&Words::Table(side_by_side(estimates)))),
+            _ => None,
+        });
+        let items: Vec<String> = items.collect();
+        let lead = paragraph(&section.lead);
+        (!items.is_empty()).then(|| format!("{}\n\n{lead}\n{}", section.title, items.join("\n")))
+    });
+    texts.collect::<Vec<_>>().join("\n")
+}
+
+fn side_by_side(estimates: &Estimates) -> Table {
+    let models = estimates
+        .models
+        .iter()
+        .map(|(name, _)| Column::numbers(name));
+    let mut columns = vec![Column::words("coefficient")];
+    columns.extend(models.chain([Column::words("unit"), Column::numbers(&estimates.note_head)]));
+    let rows = estimates.rows.iter().map(|row| {
+        let values = row.values.iter().map(|one| match one.value.is_nan() {
+            true => String::new(),
+            false => format::estimate(one.value, one.sigma).join(" ± "),
+        });
+        let mut cells = vec![row.name.clone()];
+        cells.extend(values.chain([row.unit.clone(), row.note.clone()]));
+        cells
+    });
+    let mut table = Table::new(&estimates.title, columns, rows);
+    if estimates.note_head.is_empty() {
+        table.columns.pop();
+    }
+    table
 }
 
 fn piece(piece: &Words) -> String {
@@ -48,18 +87,25 @@ fn titled(title: &str) -> String {
     }
 }
 
+/// A table with a rule below its head and no other lines.
 pub(crate) fn drawn(content: &Table) -> String {
-    let heads: Vec<&str> = content.columns.iter().map(|column| &*column.head).collect();
-    let mut table = table(heads);
+    let rule = LineStyle::none().fill('─').junction('─');
+    let mut table = comfy_table::Table::new();
+    table
+        .load_style(TableStyle::new().header_separator(rule))
+        .set_content_arrangement(ContentArrangement::Dynamic)
+        .set_header(content.columns.iter().map(|column| &column.head));
+    if let Some(columns) = width::columns() {
+        table.set_width(u16::try_from(columns).unwrap_or(u16::MAX));
+    }
     for row in &content.rows {
-        let cells = row.iter().zip(&content.columns).map(|(cell, column)| {
-            if column.is_number {
-                right(&cell.text)
-            } else {
-                Cell::new(&cell.text)
-            }
-        });
-        table.add_row(cells.collect::<Vec<_>>());
+        let cells = row.iter().zip(&content.columns);
+        table.add_row(cells.map(|(cell, column)| {
+            Cell::new(&cell.text).set_alignment(match column.is_number {
+                true => CellAlignment::Right,
+                false => CellAlignment::Left,
+            })
+        }));
     }
     table.trim_fmt()
 }

@@ -10,6 +10,7 @@
 //! `exit.rs` has the exit codes. Text reaches the terminal in `terminal.rs` and errors in
 //! `error_report.rs`, without characters that would steer it.
 
+mod advice;
 mod allan;
 mod calibrate;
 mod characterise;
@@ -27,7 +28,6 @@ mod layout;
 mod manual;
 mod measured;
 mod monte_carlo;
-mod noise;
 mod numbers;
 mod outputs;
 mod page;
@@ -40,7 +40,6 @@ mod records;
 mod reply;
 mod report;
 mod simulate;
-mod tables;
 mod terminal;
 mod text;
 mod tumble;

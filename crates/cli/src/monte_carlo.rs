@@ -1,8 +1,6 @@
 //! `gyrocal monte-carlo`: consistency and accuracy of the calibration over many simulated records.
 
 pub(crate) mod progress;
-mod screen;
-mod summary;
 
 use std::num::NonZeroUsize;
 use std::ops::Range;
@@ -83,14 +81,6 @@ pub(crate) fn run(arguments: &MonteCarloArguments) -> Result<Reply, Failure> {
             failure.message
         )));
     }
-    let first = screen::first(arguments, &summary);
-    let mut answer = Reply::of(first.clone(), summary::text(arguments, &summary));
-    if let Some(path) = &arguments.results {
-        answer.wrote(path, "results of all runs");
-    }
-    if arguments.json.is_none() && !arguments.views.are_asked() {
-        return Ok(answer);
-    }
     let report = MonteCarloReport {
         schema_version: SCHEMA_VERSION,
         manifest: manifest(MODEL_HASH, seed, &[&arguments.scenario])?,
@@ -98,13 +88,13 @@ pub(crate) fn run(arguments: &MonteCarloArguments) -> Result<Reply, Failure> {
         population: arguments.population,
         summary,
     };
-    let mut outputs = Outputs::new();
-    if arguments.views.are_asked() {
-        let part = of_monte_carlo(&report, first);
-        arguments
-            .views
-            .stage(&arguments.scenario, part, &mut outputs, &mut answer)?;
+    let part = of_monte_carlo(&report);
+    let mut answer = Reply::of_part(&part);
+    if let Some(path) = &arguments.results {
+        answer.wrote(path, "results of all runs");
     }
+    let (mut outputs, views) = (Outputs::new(), &arguments.views);
+    views.stage(&arguments.scenario, part, &mut outputs, &mut answer)?;
     if let Some(path) = &arguments.json {
         outputs.stage_json(path, &report)?;
         answer.wrote(path, "the result for programs");

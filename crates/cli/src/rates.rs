@@ -1,21 +1,16 @@
 //! `gyrocal rates`: gyro outputs at rest or on a turntable, in the rate domain.
 
-mod screen;
-
-use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use comfy_table::Cell;
-use gyrocal_instruments::rates::{GyroRates, RateReport, RateSettings, evaluate_rates};
+use gyrocal_instruments::rates::{RateReport, RateSettings, evaluate_rates};
 use gyrocal_instruments::{Description, Log, ResultFile};
-use gyrocal_record::{Outputs, printable_path};
-use gyrocal_statistics::format;
+use gyrocal_pages::of_rates;
+use gyrocal_record::Outputs;
 
 use crate::measured::unusable;
 use crate::numbers::{angle_sigma_deg, probability};
 use crate::outputs::{self, manifest};
-use crate::tables::table;
 use crate::{Failure, Reply};
 
 /// Biases, scales and effects of gyros from logs at rest or on a turntable, in rates.
@@ -52,18 +47,11 @@ pub(crate) fn run(arguments: &RatesArguments) -> Result<Reply, Failure> {
     inputs.push(&arguments.log_description);
     outputs::check(&inputs, arguments.json.as_deref(), None)?;
     let (report, notes) = work(arguments)?;
-    let mut text = String::new();
-    for note in &notes {
-        let _ = writeln!(text, "{note}\n");
-    }
-    of_logs(&mut text, arguments, &report);
-    for gyro in &report.gyros {
-        of_gyro(&mut text, gyro, report.logs.len() > 1);
-    }
-    let mut answer = Reply::of(screen::first(arguments, &report), text);
+    let manifest = manifest("", 0, &inputs)?;
+    let mut answer = Reply::of_part(&of_rates(&manifest, &report, &notes));
     let mut outputs = Outputs::new();
     if let Some(path) = &arguments.json {
-        outputs.stage_json(path, &ResultFile::new(manifest("", 0, &inputs)?, &report))?;
+        outputs.stage_json(path, &ResultFile::new(manifest, &report))?;
         answer.wrote(path, "the result for programs");
     }
     outputs.commit()?;
@@ -88,77 +76,4 @@ fn work(arguments: &RatesArguments) -> Result<(RateReport, Vec<String>), Failure
     let report =
         evaluate_rates(&logs, &description, &settings).map_err(|error| unusable(first, error))?;
     Ok((report, notes))
-}
-
-fn of_logs(text: &mut String, arguments: &RatesArguments, report: &RateReport) {
-    let mut table = table(["log", "of", "mean of the log, deg/h", "95 %"]);
-    for (path, log) in arguments.logs.iter().zip(&report.logs) {
-        let name = printable_path(path);
-        for (gyro, law) in report.gyros.iter().enumerate() {
-            let half_width = log.bias_half_width_deg_per_h[gyro];
-            table.add_row([
-                Cell::new(&name),
-                Cell::new(format!("{}, less Earth rate", law.gyro)),
-                Cell::new(format!("{:.4}", log.bias_deg_per_h[gyro])),
-                Cell::new(format!("± {half_width:.4}")),
-            ]);
-        }
-        let [rate, sigma] = log.vertical_deg_per_h;
-        table.add_row([
-            Cell::new(&name),
-            Cell::new("vertical, Earth rate and bias"),
-            Cell::new(format!("{rate:.4}")),
-            Cell::new(format!("± {:.4}", gyrocal_statistics::NORMAL_97_5 * sigma)),
-        ]);
-    }
-    let _ = writeln!(
-        text,
-        "Means; the heading is unknown, and Earth rate is {:.4} deg/h up and {:.4} deg/h north:\n\n{}\n",
-        report.earth_vertical_deg_per_h,
-        report.earth_horizontal_deg_per_h,
-        table.trim_fmt()
-    );
-}
-
-fn of_gyro(text: &mut String, gyro: &GyroRates, several: bool) {
-    let mut table = table(["coefficient", "estimate"]);
-    for coefficient in &gyro.coefficients {
-        let estimate = format::estimate(coefficient.estimate, coefficient.sigma).join(" ± ");
-        table.add_row([
-            Cell::new(&coefficient.name),
-            Cell::new(format!("{estimate} {}", coefficient.unit)),
-        ]);
-    }
-    let _ = writeln!(text, "{}\n", table.trim_fmt());
-    if !gyro.undetermined.is_empty() {
-        let _ = writeln!(
-            text,
-            "{}: not determined in addition: {}.",
-            gyro.gyro,
-            gyro.undetermined.join(", ")
-        );
-    }
-    for effect in &gyro.effects {
-        let at = effect.step.map_or_else(String::new, |(time_s, log)| {
-            format!(" at {time_s:.0} s of log {}", log + 1)
-        });
-        let alternatives = match &effect.alternatives[..] {
-            [] => "no alternative".to_owned(),
-            names => format!("alternatives: {}", names.join(", ")),
-        };
-        let p = format::p_value(effect.p_value);
-        let _ = writeln!(text, "Found: {}{at} ({p}); {alternatives}.", effect.name);
-    }
-    let noise = &gyro.noise;
-    let between = if several {
-        format!(", bias from log to log {:.3e} deg/h", noise.between_logs)
-    } else {
-        String::new()
-    };
-    let _ = writeln!(
-        text,
-        "Noise: random walk {:.3e} deg/h sqrt(s), bias instability {:.3e} deg/h, rate random walk \
-         {:.3e} deg/h/sqrt(s){between}.\n",
-        noise.random_walk, noise.bias_instability, noise.rate_random_walk
-    );
 }

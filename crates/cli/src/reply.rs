@@ -3,10 +3,11 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use gyrocal_document::Screen;
+use gyrocal_answer::Answer;
+use gyrocal_document::{Part, Screen};
 use gyrocal_record::{printable, printable_path};
 
-use crate::terminal;
+use crate::{layout, terminal};
 
 /// Result of a command.
 #[derive(Debug, Default)]
@@ -38,6 +39,17 @@ impl Reply {
             text,
             ..Self::default()
         }
+    }
+
+    /// What a diagnosis of a platform tells.
+    pub(crate) fn of_answer(answer: &Answer) -> Self {
+        let text = layout::layout(&gyrocal_words::diagnosis(answer));
+        Self::of(gyrocal_words::first_screen(answer), text)
+    }
+
+    /// What a page shows: its first screen, and its sections as details.
+    pub(crate) fn of_part(part: &Part) -> Self {
+        Self::of(part.first.clone(), layout::sections(&part.sections))
     }
 
     /// Tells of a file that was written.

@@ -1,7 +1,5 @@
 //! `gyrocal report`: answers as one HTML file.
 
-mod budget;
-
 use std::path::{Path, PathBuf};
 
 use clap::{ArgAction, Args};
@@ -13,7 +11,10 @@ use gyrocal_diagnosis::{
     DiagnoseOptions, DiagnosisError, Gate, RecordUncertainty, UncertaintyResult, diagnose_gated,
     record_uncertainty,
 };
-use gyrocal_pages::{Part, of_budget, of_calibration, of_diagnosis, of_plan, of_result, of_spread};
+use gyrocal_pages::{
+    Part, of_budget, of_calibration, of_diagnosis, of_plan, of_result, of_spread,
+    uncertainty_screen,
+};
 use gyrocal_record::{
     Bench, CalibrationReport, InputRole, Outputs, RecordFile, SourceText, printable_path,
 };
@@ -25,7 +26,7 @@ use crate::diagnose::NotDiagnosed;
 use crate::outputs::{manifest, manifest_of, refuse_overlap, refuse_unwritable};
 use crate::progress::Progress;
 use crate::records::refuse_shared_rows;
-use crate::{Failure, Reply, page, records};
+use crate::{Failure, Reply, layout, page, records};
 
 /// Make a report of records or results: one HTML file that opens in any browser, offline.
 ///
@@ -111,7 +112,11 @@ pub(crate) fn run(arguments: &ReportArguments) -> Result<Reply, Failure> {
         if let (Some(part), Some(spread)) = (parts.last_mut(), &found.spread) {
             part.sections.push(of_spread(spread));
         }
-        answer = Reply::of(budget::screen(&found), budget::text(&found));
+        let sections = found.records.iter().map(of_budget);
+        let sections: Vec<_> = sections
+            .chain(found.spread.as_ref().map(of_spread))
+            .collect();
+        answer = Reply::of(uncertainty_screen(&found), layout::sections(&sections));
         if let Some(path) = json {
             outputs.stage_json(path, &found)?;
             answer.wrote(path, "uncertainty budgets");

@@ -1,25 +1,19 @@
 //! `gyrocal tumble`: multi-position test of gyros from a log with static stops in many attitudes.
 
-mod few;
-mod many;
-mod screen;
-mod sensors;
-
-use std::fmt::Write as _;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use gyrocal::generated::MODEL_HASH;
 use gyrocal_instruments::multi_position::{
-    FewPositionReport, MultiPositionReport, MultiPositionSettings, PreparedTest, SearchSettings,
-    TumbleResult, few_position_test, fewest_stops, multi_position_test, prepare_logs,
+    MultiPositionSettings, PreparedTest, SearchSettings, TumbleResult, few_position_test,
+    fewest_stops, multi_position_test, prepare_logs,
 };
 use gyrocal_instruments::{
     Description, InstrumentError, Log, ResultFile, StopSettings, find_stops, given_stops,
 };
-use gyrocal_pages::of_tumble;
-use gyrocal_record::{Outputs, printable_path};
+use gyrocal_pages::{TumbleAnswer, of_tumble};
+use gyrocal_record::Outputs;
 
 use crate::measured::{interval, unusable};
 use crate::numbers::{positive, probability};
@@ -68,13 +62,6 @@ pub(crate) struct TumbleArguments {
     json: Option<PathBuf>,
 }
 
-/// Result of a test with many or with few stops.
-#[derive(Debug)]
-enum Report {
-    Many(Box<MultiPositionReport>),
-    Few(FewPositionReport),
-}
-
 /// Runs the command; returns the text for stdout.
 pub(crate) fn run(arguments: &TumbleArguments) -> Result<Reply, Failure> {
     let mut inputs: Vec<&Path> = arguments.logs.iter().map(|log| &**log).collect();
@@ -92,68 +79,32 @@ pub(crate) fn run(arguments: &TumbleArguments) -> Result<Reply, Failure> {
                 .to_owned(),
         ));
     }
-    let (prepared, report, notes) = work(arguments)?;
-    tracing::info!(?report, "tested");
+    let (prepared, result, clocks) = work(arguments)?;
+    tracing::info!(?result, "tested");
+    let manifest = manifest(MODEL_HASH, arguments.seed, &inputs)?;
+    let mut part = of_tumble(&TumbleAnswer {
+        manifest: &manifest,
+        prepared: &prepared,
+        result: &result,
+        false_alarm: arguments.false_alarm,
+        left_out: arguments.left_out,
+        clocks: &clocks,
+    });
+    let views = &arguments.views;
+    if !views.are_asked() {
+        let command = format!("{} --figures figures", outputs::command_line());
+        part.first.then(command, "pictures");
+    }
+    let mut answer = Reply::of_part(&part);
     let mut outputs = Outputs::new();
-    let mut text = format!(
-        "{}: {} static stops\n\n",
-        named(arguments),
-        prepared.stops.len()
-    );
-    for note in &notes {
-        let _ = writeln!(text, "{note}\n");
-    }
-    text += &sensors::text(&prepared);
-    match &report {
-        Report::Many(report) => text += &many::text(arguments, report),
-        Report::Few(report) => text += &few::text(report, arguments.false_alarm),
-    }
-    not_identifiable(&mut text, &prepared);
-    let first = screen::first(arguments, &prepared, &report);
-    let mut answer = Reply::of(first.clone(), text);
     // The folder of pictures first: the result for programs may go there too.
-    match &report {
-        Report::Many(report) if arguments.views.are_asked() => {
-            let manifest = manifest(MODEL_HASH, arguments.seed, &inputs)?;
-            let part = of_tumble(&manifest, &prepared, report, first);
-            let (log, views) = (&arguments.logs[0], &arguments.views);
-            views.stage(log, part, &mut outputs, &mut answer)?;
-        }
-        Report::Many(_) => (),
-        Report::Few(_) => {
-            let views = [
-                (arguments.views.figures(), "no pictures: they are"),
-                (arguments.views.report(), "no report: it is"),
-            ];
-            for (path, none) in views {
-                if let Some(path) = path {
-                    answer.wrote(path, &format!("{none} made of tests with many stops"));
-                }
-            }
-        }
-    }
+    views.stage(&arguments.logs[0], part, &mut outputs, &mut answer)?;
     if let Some(path) = &arguments.json {
-        let manifest = manifest(MODEL_HASH, arguments.seed, &inputs)?;
-        let result = match report {
-            Report::Many(report) => TumbleResult::of_many(&prepared, *report),
-            Report::Few(report) => TumbleResult::of_few(&prepared, report),
-        };
         outputs.stage_json(path, &ResultFile::new(manifest, result))?;
-    }
-    if let Some(path) = &arguments.json {
         answer.wrote(path, "the result for programs");
     }
     outputs.commit()?;
     Ok(answer)
-}
-
-fn named(arguments: &TumbleArguments) -> String {
-    match &arguments.logs[..] {
-        [first, rest @ ..] if !rest.is_empty() => {
-            format!("{} and {} further logs", printable_path(first), rest.len())
-        }
-        logs => logs.iter().map(|log| printable_path(log)).collect(),
-    }
 }
 
 fn false_alarm(text: &str) -> Result<f64, String> {
@@ -164,7 +115,7 @@ fn false_alarm(text: &str) -> Result<f64, String> {
 }
 
 /// The test, and what there is to tell of the clocks.
-fn work(arguments: &TumbleArguments) -> Result<(PreparedTest, Report, Vec<String>), Failure> {
+fn work(arguments: &TumbleArguments) -> Result<(PreparedTest, TumbleResult, Vec<String>), Failure> {
     let of_log = |log: &Path, error| unusable(log, error);
     let first = &arguments.logs[0];
     let description = Description::read(&arguments.log_description)
@@ -178,9 +129,9 @@ fn work(arguments: &TumbleArguments) -> Result<(PreparedTest, Report, Vec<String
         .filter_map(|(log, _)| log.clock.note())
         .collect();
     notes.dedup();
-    let (prepared, report) =
+    let (prepared, result) =
         tested(arguments, &logs, &description).map_err(|error| of_log(first, error))?;
-    Ok((prepared, report, notes))
+    Ok((prepared, result, notes))
 }
 
 fn log_with_stops(
@@ -216,11 +167,12 @@ fn tested(
     arguments: &TumbleArguments,
     logs: &[(Log, Vec<Range<usize>>)],
     description: &Description,
-) -> Result<(PreparedTest, Report), InstrumentError> {
+) -> Result<(PreparedTest, TumbleResult), InstrumentError> {
     let prepared = prepare_logs(logs, description)?;
     if prepared.stops.len() < fewest_stops() {
         let report = few_position_test(&prepared.positions, arguments.false_alarm)?;
-        return Ok((prepared, Report::Few(report)));
+        let result = TumbleResult::of_few(&prepared, report);
+        return Ok((prepared, result));
     }
     let settings = MultiPositionSettings {
         search: SearchSettings::at(arguments.false_alarm, arguments.seed)?,
@@ -228,23 +180,6 @@ fn tested(
         ..MultiPositionSettings::default()
     };
     let report = multi_position_test(&prepared.positions, &settings)?;
-    Ok((prepared, Report::Many(Box::new(report))))
-}
-
-fn not_identifiable(text: &mut String, prepared: &PreparedTest) {
-    text.push_str(
-        "\nNot distinguishable: squares along all three axes and the bias (they sum to 1 g²); other \
-         effects of the\nattitude to gravity, such as convection in the unit, and sensitivity to \
-         specific force.\n",
-    );
-    match prepared.instrument.latitude_deg {
-        Some(_) => text.push_str(
-            "Earth rate: the vertical part is subtracted; the horizontal part counts as scatter, since \
-             the heading is unknown.\n",
-        ),
-        None => text.push_str(
-            "Earth rate is not subtracted, since no latitude is given: each g_i contains up to 15.04 \
-             deg/h/g of it, and the\nscatter up to as much.\n",
-        ),
-    }
+    let result = TumbleResult::of_many(&prepared, report);
+    Ok((prepared, result))
 }

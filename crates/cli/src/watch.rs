@@ -1,20 +1,17 @@
 //! `gyrocal watch`: a record replayed through the watch of a controller.
 
-use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use gyrocal::generated::MODEL_HASH;
-use gyrocal_diagnosis::{
-    WatchAlarm, WatchCause, WatchOptions, WatchReplay, WatchResult, watch_record,
-};
-use gyrocal_document::{Screen, Standing};
+use gyrocal_diagnosis::{WatchCause, WatchOptions, WatchReplay, WatchResult, watch_record};
+use gyrocal_document::{Column, Screen, Standing, Table, Words};
 use gyrocal_record::{Bench, write_json};
 
 use crate::diagnose::NotDiagnosed;
+use crate::layout::layout;
 use crate::numbers::{not_negative, probability};
 use crate::outputs::{self, manifest};
-use crate::tables::{right, table};
 use crate::{Failure, Reply, records};
 
 /// Replay a record through the watch that runs on a controller beside the filter.
@@ -108,51 +105,35 @@ fn cause(cause: &WatchCause) -> String {
 }
 
 fn text(replay: &WatchReplay) -> String {
-    let mut text = format!(
-        "{} rows, {} refused. False alarms: {} a year. Declared walk of the gyros: {:.0e} \
-         deg/h/sqrt(h).\n",
-        replay.rows,
-        replay.refused_rows,
-        replay.false_alarms_per_year,
-        replay.walk_deg_per_h_per_sqrt_h,
-    );
-    if replay.alarms.is_empty() {
-        text.push_str("No alarm.\n");
-    }
+    let mut text = vec![Words::Paragraph(match replay.alarms.len() {
+        0 => "No alarm.".to_owned(),
+        _ => format!("{} rows, {} refused.", replay.rows, replay.refused_rows),
+    })];
     for alarm in &replay.alarms {
-        text.push_str(&told(alarm));
+        let what = if alarm.jump { "a jump" } else { "an effect" };
+        let title = format!("Alarm at row {} ({:.0} s): {what}", alarm.row, alarm.time_s);
+        text.push(Words::Table(causes(&title, &alarm.at_alarm)));
+        let title = format!("At row {}", alarm.refined_row);
+        text.push(Words::Table(causes(&title, &alarm.refined)));
     }
     let [effects, jumps] = replay.evidence_at_end;
-    let _ = writeln!(
-        text,
-        "\nEvidence at the end over the threshold: {effects:.2e} for effects, {jumps:.2e} for jumps."
-    );
-    text
+    text.push(Words::Paragraph(format!(
+        "Evidence at the end over the threshold: {effects:.2e} for effects, {jumps:.2e} for jumps."
+    )));
+    layout(&text)
 }
 
-fn told(alarm: &WatchAlarm) -> String {
-    let what = if alarm.jump { "a jump" } else { "an effect" };
-    format!(
-        "\nAlarm at row {} ({:.0} s): {what}.\n\n{}\n\nAt row {}:\n\n{}\n",
-        alarm.row,
-        alarm.time_s,
-        causes(&alarm.at_alarm),
-        alarm.refined_row,
-        causes(&alarm.refined),
-    )
-}
-
-fn causes(causes: &[WatchCause]) -> String {
-    let mut table = table(["effect", "size", "sigma", "unit", "since [s]", "deviance"]);
-    for cause in causes {
-        table.add_row([
-            comfy_table::Cell::new(&cause.id),
-            right(format!("{:.3e}", cause.estimate)),
-            right(format!("{:.1e}", cause.sigma)),
-            comfy_table::Cell::new(cause.unit),
-            right(format!("{:.0}", cause.since_s)),
-            right(format!("{:.1}", cause.deviance)),
-        ]);
-    }
-    table.trim_fmt()
+fn causes(title: &str, causes: &[WatchCause]) -> Table {
+    let rows = causes.iter().map(|cause| {
+        [
+            cause.id.to_string(),
+            format!("{:.3e}", cause.estimate),
+            format!("{:.1e}", cause.sigma),
+            cause.unit.to_string(),
+            format!("{:.0}", cause.since_s),
+            format!("{:.1}", cause.deviance),
+        ]
+    });
+    let columns = Column::heads("effect | > size | > sigma | unit | > since, s | > deviance");
+    Table::new(title, columns, rows)
 }

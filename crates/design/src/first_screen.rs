@@ -136,24 +136,20 @@ fn question(plan: &PlanResult) -> String {
 
 fn expectation(plan: &PlanResult, best: &Proposal, screen: &mut Screen) {
     for set in undecided(&best.outlook) {
-        screen.fact(
-            "it decides",
-            format!(
-                "{}: one of {} left with a probability of {} ({:.2} on average)",
-                set.effect,
-                counted(set.members.len(), "cause"),
-                percent(set.one_left),
-                set.mean_size
-            ),
+        let words = format!(
+            "{}: one of {} left with a probability of {} ({:.2} on average)",
+            set.effect,
+            counted(set.members.len(), "cause"),
+            percent(set.one_left),
+            set.mean_size
         );
+        screen.fact("it decides", words);
     }
-    screen.fact(
-        "coefficients",
-        format!(
-            "sigmas fall to {:.2} of the present ones (geometric mean of the nine)",
-            best.outlook.sigma_ratio
-        ),
+    let words = format!(
+        "sigmas fall to {:.2} of the present ones (geometric mean of the nine)",
+        best.outlook.sigma_ratio
     );
+    screen.fact("coefficients", words);
     let mut going_on = plan.going_on.iter();
     let going_on = going_on.find(|run| run.duration_s == best.duration_s);
     screen.fact(

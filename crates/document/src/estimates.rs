@@ -38,3 +38,20 @@ pub struct ValueWithSigma {
     /// Its standard deviation.
     pub sigma: f64,
 }
+
+impl EstimateRow {
+    /// A quantity with value and standard deviation of each model, without a remark.
+    #[must_use]
+    pub fn new(name: &str, unit: &str, values: impl IntoIterator<Item = [f64; 2]>) -> Self {
+        let values = values.into_iter();
+        Self {
+            name: name.to_owned(),
+            unit: unit.to_owned(),
+            values: values
+                .map(|[value, sigma]| ValueWithSigma { value, sigma })
+                .collect(),
+            note: String::new(),
+            strong: false,
+        }
+    }
+}

@@ -38,6 +38,16 @@ pub struct List {
     pub entries: Vec<String>,
 }
 
+impl List {
+    /// A list; `None` without entries.
+    #[must_use]
+    pub fn of(title: &str, entries: impl IntoIterator<Item = String>) -> Option<Self> {
+        let entries: Vec<String> = entries.into_iter().collect();
+        let title = title.to_owned();
+        (!entries.is_empty()).then_some(Self { title, entries })
+    }
+}
+
 /// A table.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 pub struct Table {
@@ -77,6 +87,18 @@ pub struct Column {
 }
 
 impl Column {
+    /// Columns by their heads, between `|`; `>` stands before those of numbers: `coefficient | > estimate`.
+    #[must_use]
+    pub fn heads(heads: &str) -> Vec<Self> {
+        let heads = heads.split('|').map(str::trim);
+        heads
+            .map(|head| match head.strip_prefix("> ") {
+                Some(head) => Self::numbers(head),
+                None => Self::words(head),
+            })
+            .collect()
+    }
+
     /// A column of words.
     #[must_use]
     pub fn words(head: &str) -> Self {

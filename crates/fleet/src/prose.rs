@@ -2,7 +2,7 @@
 
 use gyrocal_document::{Column, List, Screen, Standing, Table, Words};
 use gyrocal_statistics::format;
-use gyrocal_words::counted;
+use gyrocal_words::{counted, few};
 
 use crate::answer::{
     FleetCoefficient, FleetResult, Group, GroupFinding, GroupKind, RecurringCause, WithInterval,
@@ -18,14 +18,7 @@ pub fn all(fleet: &FleetResult) -> Vec<Words> {
         Words::Paragraph(size(fleet)),
         Words::Paragraph(verdict(fleet)),
     ];
-    let list = |title: &str, entries: Vec<String>| {
-        (!entries.is_empty()).then(|| {
-            Words::List(List {
-                title: title.to_owned(),
-                entries,
-            })
-        })
-    };
+    let list = |title: &str, entries: Vec<String>| List::of(title, entries).map(Words::List);
     let recurring = fleet.recurring.iter().map(recurring).collect();
     blocks.extend(list(
         "Causes that recur below what units show by themselves",
@@ -227,16 +220,8 @@ fn outliers(fleet: &FleetResult) -> Vec<String> {
 
 /// The first names of a list, and how many more there are.
 fn named(units: &[String]) -> String {
-    let first = units
-        .iter()
-        .take(NAMED)
-        .cloned()
-        .collect::<Vec<_>>()
-        .join(", ");
-    match units.len().saturating_sub(NAMED) {
-        0 => first,
-        more => format!("{first} and {more} more"),
-    }
+    let units: Vec<&str> = units.iter().map(|unit| &**unit).collect();
+    few(&units, NAMED)
 }
 
 /// Estimate and interval with the digits that the interval allows.
@@ -250,8 +235,7 @@ fn interval(found: &WithInterval) -> String {
 }
 
 /// Mean, spread and ageing of each coefficient.
-#[must_use]
-pub fn coefficients(fleet: &FleetResult) -> Table {
+fn coefficients(fleet: &FleetResult) -> Table {
     let cell = |found: &Option<WithInterval>| found.as_ref().map_or_else(String::new, interval);
     let rows = fleet.coefficients.iter().map(|one| {
         vec![
@@ -265,14 +249,9 @@ pub fn coefficients(fleet: &FleetResult) -> Table {
     });
     Table::new(
         "Drift coefficients over the units, with 95 % intervals",
-        vec![
-            Column::words("coefficient"),
-            Column::numbers("mean"),
-            Column::numbers("spread of units"),
-            Column::numbers("record to record"),
-            Column::numbers("change in a year"),
-            Column::words("unit"),
-        ],
+        Column::heads(
+            "coefficient | > mean | > spread of units | > record to record | > change in a year | unit",
+        ),
         rows,
     )
 }

@@ -1,9 +1,9 @@
 //! The page of Allan deviations.
 
-use gyrocal_document::{
-    Band, Cell, Chart, Column, Item, Line, LineKind, Panel, Part, Screen, Table, Tint,
-};
-use gyrocal_instruments::AllanColumn;
+mod screen;
+
+use gyrocal_document::{Band, Chart, Column, Item, Line, LineKind, Panel, Part, Table, Tint};
+use gyrocal_instruments::{AllanColumn, AllanReport};
 use gyrocal_record::Manifest;
 use gyrocal_statistics::allan::NoiseFit;
 use gyrocal_statistics::format;
@@ -11,70 +11,57 @@ use gyrocal_statistics::format;
 use crate::diagnosis::section;
 use crate::origin::{file_name, origin};
 
-/// Allan deviations of a log.
-#[derive(Clone, Copy, Debug)]
-pub struct AllanAnswer<'a> {
-    /// Origin of the answer.
-    pub manifest: &'a Manifest,
-    /// The columns.
-    pub columns: &'a [AllanColumn],
-    /// Unit of the deviations.
-    pub unit: &'a str,
-    /// The estimator in words.
-    pub estimator: &'a str,
-    /// Confidence level of the intervals.
-    pub confidence: f64,
-}
-
-/// The page of Allan deviations.
+/// The page of Allan deviations; `clock` is what there is to tell of the clock of the log.
 #[must_use]
-pub fn of_allan(answer: &AllanAnswer<'_>, first: Screen) -> Part {
-    let mut sections = vec![section(
+pub fn of_allan(manifest: &Manifest, report: &AllanReport, clock: Option<&str>) -> Part {
+    let estimator = format!(
+        "{}, intervals at a confidence of {}",
+        crate::words::capitalised(report.estimator),
+        format::percent(report.confidence)
+    );
+    let deviations = section(
         "deviation",
         "Deviations",
         &format!(
-            "{}, intervals at a confidence of {}. A slope of −1/2 is white noise of the rate (angle random \
-             walk), a flat part bias instability, a slope of +1/2 a random walk of the rate.",
-            crate::words::capitalised(answer.estimator),
-            format::percent(answer.confidence)
+            "{estimator}. A slope of −1/2 is white noise of the rate (angle random walk), a flat part bias \
+             instability, a slope of +1/2 a random walk of the rate."
         ),
-        vec![Item::Chart(chart(answer))],
-    )];
-    let tables = answer.columns.iter().filter_map(|column| {
-        let noise = column.noise.as_ref()?;
-        Some(Item::from(parts(&column.name, noise, answer.unit)))
-    });
-    let tables: Vec<Item> = tables.collect();
-    if !tables.is_empty() {
-        sections.push(section(
-            "parts",
-            "Parts of the noise",
-            "Fitted with the covariances of the deviations over averaging times.",
-            tables,
-        ));
-    }
-    let points = answer
+        vec![Item::Chart(chart(report))],
+    );
+    let unit = &report.unit;
+    let parts = report
         .columns
         .iter()
-        .map(|column| Item::from(points(column, answer)));
-    sections.push(section(
+        .flat_map(|column| parts(&column.name, column.noise.as_ref(), unit));
+    let parts = section(
+        "parts",
+        "Parts of the noise",
+        "Fitted with the covariances of the deviations over averaging times. The flat part of a bias instability B \
+         is 0.664 B.",
+        parts.collect(),
+    );
+    let points = report
+        .columns
+        .iter()
+        .map(|column| points(column, report).into());
+    let points = section(
         "points",
         "Tables",
-        "The deviation at each averaging time with its confidence interval.",
+        &format!("{estimator}, at each averaging time."),
         points.collect(),
-    ));
-    let names: Vec<&str> = answer.columns.iter().map(|column| &*column.name).collect();
+    );
+    let names: Vec<&str> = report.columns.iter().map(|column| &*column.name).collect();
     Part {
-        name: file_name(answer.manifest, 0, "log"),
+        name: file_name(manifest, 0, "log"),
         size: crate::words::listed(&names),
-        first,
-        sections,
-        origin: origin(answer.manifest),
+        first: screen::first(report, clock),
+        sections: vec![deviations, parts, points],
+        origin: origin(manifest),
     }
 }
 
-fn chart(answer: &AllanAnswer<'_>) -> Chart {
-    let panels = answer.columns.iter().map(|column| {
+fn chart(report: &AllanReport) -> Chart {
+    let panels = report.columns.iter().map(|column| {
         let of = |value: fn(&gyrocal_instruments::AllanColumnPoint) -> f64| -> Vec<f64> {
             column.points.iter().map(value).collect()
         };
@@ -84,7 +71,7 @@ fn chart(answer: &AllanAnswer<'_>) -> Chart {
             bands: vec![Band {
                 label: format!(
                     "interval, confidence {}",
-                    format::percent(answer.confidence)
+                    format::percent(report.confidence)
                 ),
                 tint: Tint::Measured,
                 lower: of(|point| point.low),
@@ -102,29 +89,28 @@ fn chart(answer: &AllanAnswer<'_>) -> Chart {
     });
     Chart {
         title: "Deviation against averaging time".to_owned(),
-        caption: answer.estimator.to_owned(),
+        caption: report.estimator.to_owned(),
         abscissa: "averaging time".to_owned(),
         abscissa_unit: "s".to_owned(),
         logarithmic_abscissa: true,
         quantity: "deviation".to_owned(),
-        unit: answer.unit.to_owned(),
+        unit: report.unit.to_owned(),
         logarithmic: true,
         same_scale: true,
         panels: panels.collect(),
-        columns: answer.columns.len().clamp(1, 3),
+        columns: report.columns.len().clamp(1, 3),
         height_px: 300,
         ..Chart::default()
     }
 }
 
-fn head(head: &str, is_number: bool) -> Column {
-    Column {
-        head: head.to_owned(),
-        is_number,
-    }
-}
-
-fn parts(name: &str, noise: &NoiseFit, unit: &str) -> Table {
+/// The coefficients of a column with their intervals, and the test of fit.
+fn parts(name: &str, noise: Option<&NoiseFit>, unit: &str) -> Vec<Item> {
+    let Some(noise) = noise else {
+        return vec![Item::text(format!(
+            "{name}: too few averaging times for a fit."
+        ))];
+    };
     let rows = noise.coefficients.iter().map(|one| {
         let (estimate, interval) = match (one.estimate, one.interval) {
             (Some(estimate), Some([low, high])) if low > 0.0 => (
@@ -134,46 +120,45 @@ fn parts(name: &str, noise: &NoiseFit, unit: &str) -> Table {
             (Some(_), Some([_, high])) => ("not visible".to_owned(), format!("below {high:.3e}")),
             _ => ("not determined".to_owned(), String::new()),
         };
-        vec![
-            Cell::from(one.part.description().to_owned()),
-            Cell::from(estimate),
-            Cell::from(interval),
-            Cell::from(format!("{unit}{}", one.part.unit_suffix())),
-        ]
+        let unit = format!("{unit}{}", one.part.unit_suffix());
+        [one.part.description().to_owned(), estimate, interval, unit]
     });
-    Table {
-        title: name.to_owned(),
-        columns: vec![
-            head("part", false),
-            head("coefficient", true),
-            head("95 % interval", true),
-            head("unit", false),
-        ],
-        rows: rows.collect(),
-    }
+    let columns = Column::heads("part | > coefficient | > 95 % interval | unit");
+    let [from_s, to_s] = noise.range_s;
+    let remark = match (noise.correlated_samples, noise.is_described()) {
+        (true, _) => {
+            " The samples are correlated for a short time, as by a filter or dither: shorter averaging times are \
+             left out, and quantisation is not distinguishable from the filter."
+        }
+        (_, true) => "",
+        _ => {
+            " The noise is no sum of these parts at any range of averaging times: no coefficient is determined. \
+             Look for vibration, jumps, or a change of temperature."
+        }
+    };
+    let p = format::p_value(noise.p_value);
+    vec![
+        Table::new(name, columns, rows).into(),
+        Item::text(format!(
+            "{name}: fitted from {from_s:.4} to {to_s:.4} s; test of fit: {p}.{remark}"
+        )),
+    ]
 }
 
-fn points(column: &AllanColumn, answer: &AllanAnswer<'_>) -> Table {
+fn points(column: &AllanColumn, report: &AllanReport) -> Table {
     let rows = column.points.iter().map(|point| {
-        vec![
-            Cell::from(format::short(point.tau_s, 4)),
-            Cell::from(format!("{:.4e}", point.deviation)),
-            Cell::from(format!("{:.4e}", point.low)),
-            Cell::from(format!("{:.4e}", point.high)),
-            Cell::from(format!("{:.1}", point.degrees_of_freedom)),
-            Cell::from(point.noise.to_owned()),
+        [
+            format::short(point.tau_s, 4),
+            format!("{:.4e}", point.deviation),
+            format!("{:.4e}", point.low),
+            format!("{:.4e}", point.high),
+            format!("{:.1}", point.degrees_of_freedom),
+            point.noise.to_owned(),
         ]
     });
-    Table {
-        title: column.name.clone(),
-        columns: vec![
-            head("averaging time, s", true),
-            head(&format!("deviation, {}", answer.unit), true),
-            head("low", true),
-            head("high", true),
-            head("degrees of freedom", true),
-            head("noise", false),
-        ],
-        rows: rows.collect(),
-    }
+    let columns = Column::heads(&format!(
+        "> averaging time, s | > deviation, {} | > low | > high | > degrees of freedom | noise",
+        report.unit.replace('|', " ")
+    ));
+    Table::new(&column.name, columns, rows)
 }

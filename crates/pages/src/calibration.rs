@@ -1,7 +1,8 @@
 //! The page of a calibration.
 
+use gyrocal::generated::platform::DRIFT;
 use gyrocal_calibration::FittedPlatform;
-use gyrocal_document::{EstimateRow, Estimates, Item, Part, Section, Tint, ValueWithSigma};
+use gyrocal_document::{Column, EstimateRow, Estimates, Item, Part, Section, Table, Tint};
 use gyrocal_record::{Bench, CalibrationReport, Coefficient, Record};
 use gyrocal_words::{calibration, calibration_screen};
 
@@ -35,7 +36,7 @@ pub fn of_calibration(
     for (place, one) in records.iter().enumerate() {
         sections.extend(over_time(one, (records.len() > 1).then_some(place))?);
     }
-    if !report.coefficients.is_empty() {
+    if report.usable {
         sections.push(estimates(report));
     }
     sections.push(section(
@@ -92,18 +93,14 @@ fn over_time(
 
 fn estimates(report: &CalibrationReport) -> Section {
     let with = report.with_effects.as_ref();
-    let value = |one: &Coefficient| ValueWithSigma {
-        value: one.estimate,
-        sigma: one.sigma,
-    };
+    let value = |one: &Coefficient| [one.estimate, one.sigma];
     let rows = report.coefficients.iter().enumerate().map(|(place, one)| {
         let extended = with.and_then(|with| with.coefficients.get(place));
+        let values = core::iter::once(one).chain(extended);
         EstimateRow {
-            name: one.name.clone(),
-            unit: one.unit.clone(),
-            values: core::iter::once(one).chain(extended).map(value).collect(),
             note: if one.determined { "yes" } else { "no" }.to_owned(),
             strong: !one.determined,
+            ..EstimateRow::new(&one.name, &one.unit, values.map(value))
         }
     });
     let mut models = vec![("nominal model".to_owned(), Tint::Nominal)];
@@ -116,15 +113,20 @@ fn estimates(report: &CalibrationReport) -> Section {
             .as_ref()
             .map(|names| (format!("with {names}"), Tint::Extended)),
     );
+    let estimates = Estimates {
+        title: "Drift coefficients".to_owned(),
+        models,
+        rows: rows.collect(),
+        note_head: "determined".to_owned(),
+    };
+    let mut items = vec![Item::Estimates(estimates)];
+    let columns = Column::heads("coefficient | meaning");
+    let meanings = DRIFT.map(|one| [one.id, one.doc].map(str::to_owned));
+    items.push(Table::new("What they are", columns, meanings).into());
     section(
         "coefficients",
         "Coefficients",
         "The nine drift coefficients with their standard deviations.",
-        vec![Item::Estimates(Estimates {
-            title: "Drift coefficients".to_owned(),
-            models,
-            rows: rows.collect(),
-            note_head: "determined".to_owned(),
-        })],
+        items,
     )
 }

@@ -1,12 +1,13 @@
 //! The page of a fleet.
 
-use gyrocal_document::{Bar, BarGroup, Bars, Cell, Column, Item, Part, Table, Tint};
+use gyrocal_document::{Bar, BarGroup, Bars, Column, Item, Part, Table, Tint};
 use gyrocal_fleet::{FleetResult, prose};
 use gyrocal_statistics::format;
 use gyrocal_words::counted;
 
 use crate::diagnosis::section;
 use crate::origin::origin;
+use crate::words::by_kind;
 
 /// Units of a coefficient that are shown as bars.
 const SHOWN: usize = 40;
@@ -14,11 +15,12 @@ const SHOWN: usize = 40;
 /// The page of what a fleet shows.
 #[must_use]
 pub fn of_fleet(fleet: &FleetResult) -> Part {
+    let (tables, words) = by_kind(prose::all(fleet));
     let mut sections = vec![section(
         "coefficients",
         "Coefficients over the units",
         "Mean and spread of the units, with 95 % intervals. The spread is without the errors of the estimates.",
-        vec![Item::from(prose::coefficients(fleet))],
+        tables,
     )];
     if !fleet.recurring.is_empty() {
         sections.push(section(
@@ -73,7 +75,7 @@ pub fn of_fleet(fleet: &FleetResult) -> Part {
         "words",
         "In words",
         "All that the fleet shows.",
-        prose::all(fleet).into_iter().map(Item::Words).collect(),
+        words,
     ));
     Part {
         name: "fleet".to_owned(),
@@ -111,20 +113,14 @@ fn evidence(fleet: &FleetResult) -> Bars {
 fn units(fleet: &FleetResult) -> Table {
     let rows = fleet.recurring.iter().flat_map(|cause| {
         cause.units.iter().map(|one| {
-            vec![
-                Cell::from(cause.effect.clone()),
-                Cell::from(one.unit.clone()),
-                Cell::from(format!("{:.2}", one.probability)),
-            ]
+            let probability = format!("{:.2}", one.probability);
+            [cause.effect.clone(), one.unit.clone(), probability]
         })
     });
-    Table {
-        title: "Units that are more likely than not to have it".to_owned(),
-        columns: vec![
-            Column::words("effect"),
-            Column::words("unit"),
-            Column::numbers("probability"),
-        ],
-        rows: rows.collect(),
-    }
+    let columns = Column::heads("effect | unit | > probability");
+    Table::new(
+        "Units that are more likely than not to have it",
+        columns,
+        rows,
+    )
 }

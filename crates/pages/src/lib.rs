@@ -13,9 +13,11 @@
 //! | [`of_plan`] | a planned next run |
 //! | [`of_plant`] | a diagnosis of any plant |
 //! | [`of_fleet`] | what a fleet shows |
-//! | [`of_tumble`] | a multi-position test with many stops |
+//! | [`of_tumble`] | a multi-position test |
 //! | [`of_budget`], [`of_spread`] | sections of an uncertainty budget, of the scatter over runs |
 //! | [`of_monte_carlo`] | a calibration over many simulated records |
+//! | [`of_rates`] | gyro outputs in the rate domain |
+//! | [`of_characterise`] | operating characteristics |
 //! | [`of_allan`] | Allan deviations of a log |
 //!
 //! [`pictures`] are the charts of a part, for files of their own.
@@ -26,6 +28,7 @@
 
 mod allan;
 mod calibration;
+mod characterise;
 mod diagnosis;
 mod error;
 mod fleet;
@@ -36,6 +39,7 @@ mod pictures;
 mod plan;
 mod plant;
 mod ranked;
+mod rates;
 mod tumble;
 mod uncertainty;
 mod unlisted;
@@ -43,8 +47,9 @@ mod words;
 
 use gyrocal_answer::{Answer, Subject};
 
-pub use allan::{AllanAnswer, of_allan};
+pub use allan::of_allan;
 pub use calibration::{CalibratedRecord, of_calibration};
+pub use characterise::of_characterise;
 pub use diagnosis::of_diagnosis;
 pub use error::PageError;
 pub use fleet::of_fleet;
@@ -53,8 +58,9 @@ pub use monte_carlo::of_monte_carlo;
 pub use pictures::pictures;
 pub use plan::of_plan;
 pub use plant::of_plant;
-pub use tumble::of_tumble;
-pub use uncertainty::{of_budget, of_spread};
+pub use rates::of_rates;
+pub use tumble::{TumbleAnswer, of_tumble};
+pub use uncertainty::{of_budget, of_spread, uncertainty_screen};
 
 /// The page of a written answer: all but the charts over time, for which the record is needed.
 #[must_use]

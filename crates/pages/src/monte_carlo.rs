@@ -1,9 +1,11 @@
 //! The page of a calibration over many simulated records.
 
-use gyrocal_document::{
-    Bar, BarGroup, Bars, Cell, Column, Item, List, Part, Screen, Section, Table, Tint,
+mod screen;
+
+use gyrocal_document::{Bar, BarGroup, Bars, Column, Item, List, Part, Section, Table, Tint};
+use gyrocal_evaluation::{
+    BandedMean, CalibrationSummary, CoefficientSummary, MeasuredValue, MonteCarloReport,
 };
-use gyrocal_evaluation::{CalibrationSummary, MeasuredValue, MonteCarloReport};
 use gyrocal_statistics::format;
 
 use crate::diagnosis::section;
@@ -17,9 +19,9 @@ const COVERED: f64 = 0.95;
 
 /// The page of a calibration over many simulated records.
 #[must_use]
-pub fn of_monte_carlo(report: &MonteCarloReport, first: Screen) -> Part {
+pub fn of_monte_carlo(report: &MonteCarloReport) -> Part {
     let summary = &report.summary;
-    let mut sections = vec![section(
+    let coefficients = section(
         "coefficients",
         "Coefficients",
         "Statistics of a coefficient are over the runs that determine it: sigma below a tenth of the prior's. \
@@ -29,20 +31,25 @@ pub fn of_monte_carlo(report: &MonteCarloReport, first: Screen) -> Part {
             Item::Bars(coverage(summary)),
             Item::from(coefficients(summary)),
         ],
-    )];
+    );
+    let mut sections = vec![coefficients, consistency(summary)];
     sections.extend(failures(summary));
-    let [lowest, after] = report.seeds;
-    let what = match report.population {
-        true => "scenarios of a population",
-        false => "seeds",
-    };
     Part {
         name: file_name(&report.manifest, 0, "scenario"),
-        size: format!("{what} {lowest} to {}", after.saturating_sub(1)),
-        first,
+        size: seeds(report),
+        first: screen::first(report),
         sections,
         origin: origin(&report.manifest),
     }
+}
+
+fn seeds(report: &MonteCarloReport) -> String {
+    let [lowest, after] = report.seeds;
+    let what = match report.population {
+        true => "scenarios of its population",
+        false => "seeds",
+    };
+    format!("{what} {lowest} to {}", after.saturating_sub(1))
 }
 
 fn errors(summary: &CalibrationSummary) -> Bars {
@@ -67,13 +74,16 @@ fn bars(
     summary: &CalibrationSummary,
     (title, quantity): (&str, &str),
     (threshold, meaning): (f64, &str),
-    of: impl Fn(&gyrocal_evaluation::CoefficientSummary) -> Option<MeasuredValue>,
+    of: impl Fn(&CoefficientSummary) -> Option<MeasuredValue>,
 ) -> Bars {
     let bars = summary.coefficients.iter().map(|one| Bar {
         label: one.name.clone(),
         value: of(one).map_or(f64::NAN, |found| found.value),
         tint: Tint::Nominal,
-        note: of(one).map_or_else(String::new, |found| interval(found, 1.0, 3)),
+        note: of(one).map_or_else(String::new, |found| {
+            let [low, high] = found.interval;
+            format!("{low:.3} to {high:.3}")
+        }),
     });
     Bars {
         title: title.to_owned(),
@@ -88,28 +98,9 @@ fn bars(
 }
 
 fn coefficients(summary: &CalibrationSummary) -> Table {
-    let heads = [
-        ("coefficient", false),
-        ("unit", false),
-        ("runs that determine it", true),
-        ("bias", true),
-        ("standard error", true),
-        ("RMSE", true),
-        ("median sigma", true),
-        ("RMSE / sigma", true),
-        ("RMSE / Cramér-Rao bound", true),
-        ("in the 95 % interval", true),
-    ];
-    let columns = heads.map(|(head, is_number)| Column {
-        head: head.to_owned(),
-        is_number,
-    });
-    let number =
-        |value: Option<f64>| value.map_or_else(String::new, |value| format::short(value, 3));
-    let measured = |found: Option<MeasuredValue>| {
-        found.map_or_else(String::new, |found| {
-            format!("{:.3} ({})", found.value, interval(found, 1.0, 3))
-        })
+    let number = |value: Option<f64>| value.map_or_else(String::new, |one| format::short(one, 3));
+    let of = |found: Option<MeasuredValue>| {
+        found.map_or_else(String::new, |found| measured(found, 1.0, 3))
     };
     let rows = summary.coefficients.iter().map(|one| {
         [
@@ -120,50 +111,85 @@ fn coefficients(summary: &CalibrationSummary) -> Table {
             number(one.bias_standard_error),
             number(one.rmse),
             number(one.sigma_median),
-            measured(one.rmse_over_sigma),
-            measured(one.rmse_over_bound),
-            measured(one.coverage),
+            of(one.rmse_over_sigma),
+            of(one.rmse_over_bound),
+            of(one.coverage),
         ]
-        .map(Cell::from)
-        .into()
     });
-    Table {
-        title: "All coefficients".to_owned(),
-        columns: columns.into(),
-        rows: rows.collect(),
-    }
+    let columns = "coefficient | unit | > runs that determine it | > bias | > standard error | > RMSE \
+                   | > median sigma | > RMSE / sigma | > RMSE / Cramér-Rao bound | > in the 95 % interval";
+    Table::new("All coefficients", Column::heads(columns), rows)
 }
 
-fn interval(found: MeasuredValue, scale: f64, decimals: usize) -> String {
-    let [low, high] = found.interval.map(|end| scale * end);
-    format!("{low:.decimals$} to {high:.decimals$}")
+/// A value with its interval.
+fn measured(found: MeasuredValue, scale: f64, decimals: usize) -> String {
+    let [low, high] = found.interval.map(|bound| scale * bound);
+    let value = scale * found.value;
+    format!("{value:.decimals$} ({low:.decimals$} to {high:.decimals$})")
+}
+
+/// Errors and innovations against what is expected of them.
+fn consistency(summary: &CalibrationSummary) -> Section {
+    let all = |one: &CoefficientSummary| one.determined == summary.runs;
+    // Equal to the first if all coefficients are determined in all runs.
+    let nine = summary
+        .nees
+        .filter(|_| !summary.coefficients.iter().all(all));
+    let found = [
+        (
+            "NEES of the determined coefficients",
+            summary.nees_determined,
+        ),
+        ("NEES of all nine, for a truth drawn from the prior", nine),
+        ("NIS of a row", summary.nis),
+    ];
+    let rows = found.into_iter().filter_map(|(name, banded)| {
+        let BandedMean {
+            mean,
+            expected,
+            band: [low, high],
+            median,
+        } = banded?;
+        let inside = if banded?.holds() { "inside" } else { "outside" };
+        Some([
+            name.to_owned(),
+            format!("{mean:.3}"),
+            format!("{expected:.3}"),
+            format!("{low:.3} to {high:.3}"),
+            inside.to_owned(),
+            format!("{median:.3}"),
+        ])
+    });
+    let columns = "statistic | > mean | > expected | > 99.9 % band | mean is | > median";
+    let mut items = vec![Table::new("", Column::heads(columns), rows).into()];
+    if let Some(share) = summary.consistent {
+        items.push(Item::text(format!(
+            "Runs that pass the consistency test (NIS within its 99.9 % band): {} %.",
+            measured(share, 100.0, 1)
+        )));
+    }
+    section(
+        "consistency",
+        "Consistency",
+        "Squared errors over their covariance (NEES) and squared innovations over theirs (NIS).",
+        items,
+    )
 }
 
 fn failures(summary: &CalibrationSummary) -> Option<Section> {
-    let entries: Vec<String> = summary
-        .failures
-        .iter()
-        .take(FAILURES_SHOWN)
-        .map(|failure| format!("seed {}: {}", failure.seed, failure.message))
-        .collect();
-    let title = format!(
-        "The first of {} runs without a calibration",
-        summary.failures.len()
-    );
-    (!entries.is_empty()).then(|| {
-        section(
-            "failures",
-            "Failed runs",
-            "Each seed can be simulated by itself: simulate --seed.",
-            vec![Item::from(List { title, entries })],
-        )
-    })
+    let failures = &summary.failures;
+    let first = failures.iter().take(FAILURES_SHOWN);
+    let entries = first.map(|one| format!("seed {}: {}", one.seed, one.message));
+    let title = format!("The first of {} runs without a calibration", failures.len());
+    let list = List::of(&title, entries)?.into();
+    let lead = "Each seed can be simulated by itself: simulate --seed.";
+    Some(section("failures", "Failed runs", lead, vec![list]))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use gyrocal_evaluation::{BandedMean, CoefficientSummary, Failure};
+    use gyrocal_evaluation::Failure;
     use gyrocal_record::{Input, Manifest};
 
     #[test]
@@ -217,8 +243,7 @@ mod tests {
                 }],
             },
         };
-        let first = Screen::new(gyrocal_document::Standing::Bad, "INCONSISTENT", "too large");
-        let html = gyrocal_report::to_html(&crate::page(vec![of_monte_carlo(&report, first)]));
+        let html = gyrocal_report::to_html(&crate::page(vec![of_monte_carlo(&report)]));
         let html = html.unwrap_or_default();
         for words in [
             "s.toml",
@@ -227,6 +252,8 @@ mod tests {
             "seed 7: lost",
             "gyro_x.bias",
             "0.930 (0.900 to 0.960)",
+            "2.900 to 3.100",
+            "outside",
         ] {
             assert!(html.contains(words), "{words}");
         }

@@ -1,7 +1,7 @@
 //! Origin of an answer.
 
 use gyrocal_document::{Origin, OriginFile};
-use gyrocal_record::Manifest;
+use gyrocal_record::{Input, Manifest};
 
 /// Program, command and files of a manifest.
 pub(crate) fn origin(manifest: &Manifest) -> Origin {
@@ -26,4 +26,13 @@ pub(crate) fn file_name(manifest: &Manifest, place: usize, otherwise: &str) -> S
     let input = manifest.inputs.get(place);
     let name = input.and_then(|input| input.path.rsplit(['/', '\\']).next());
     name.unwrap_or(otherwise).to_owned()
+}
+
+/// Files by name: the first, and how many follow.
+pub(crate) fn named(files: &[Input]) -> String {
+    match files {
+        [] => String::new(),
+        [one] => one.path.clone(),
+        [first, rest @ ..] => format!("{} and {} further logs", first.path, rest.len()),
+    }
 }

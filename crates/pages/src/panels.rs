@@ -1,7 +1,7 @@
 //! Panels that the pages of all models have: measured and simulated values over time, what the models leave
 //! of them, and its correlation over rows.
 
-use gyrocal_document::{Band, Line, LineKind, Panel, Tint};
+use gyrocal_document::{Band, Chart, Line, LineKind, Panel, Tint};
 
 /// Names of the models in legends.
 pub(crate) const NOMINAL: &str = "nominal model";
@@ -65,5 +65,29 @@ pub(crate) fn correlation(name: String, note: String, half_width: f64, lines: Ve
         lines,
         no_gaps: true,
         ..Panel::default()
+    }
+}
+
+/// Autocorrelations over rows; the counts are those outside of the band, and all.
+pub(crate) fn correlations(
+    [nominal, total]: [usize; 2],
+    extended: Option<usize>,
+    panels: Vec<Panel>,
+) -> Chart {
+    let of_models = extended.map_or_else(String::new, |extended| {
+        format!(" for the nominal model, {extended} for the extended one")
+    });
+    let by_chance = total / 20;
+    Chart {
+        title: format!("{nominal} of {total} autocorrelations outside the 95 % band{of_models}"),
+        caption: format!("One in twenty is outside by chance: {by_chance} of {total}."),
+        abscissa: "lag".to_owned(),
+        abscissa_unit: "rows".to_owned(),
+        quantity: "correlation".to_owned(),
+        same_scale: true,
+        panels,
+        columns: 3,
+        height_px: 190,
+        ..Chart::default()
     }
 }

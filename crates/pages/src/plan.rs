@@ -1,21 +1,23 @@
 //! The page of a planned next run.
 
-use gyrocal_design::{AttitudeOf, Forecast, PlanResult, Proposal, prose};
-use gyrocal_document::{Bar, BarGroup, Bars, Cell, Column, Item, Part, Table, Tint};
+use gyrocal_design::{AttitudeOf, PlanResult, Proposal, prose};
+use gyrocal_document::{Bar, BarGroup, Bars, Item, Part, Tint};
 use gyrocal_statistics::format;
 use gyrocal_words::counted;
 
 use crate::diagnosis::section;
 use crate::origin::{file_name, origin};
+use crate::words::by_kind;
 
 /// The page of a plan.
 #[must_use]
 pub fn of_plan(plan: &PlanResult) -> Part {
+    let (tables, words) = by_kind(prose(plan));
     let mut sections = vec![section(
         "sigmas",
         "What the run gives",
-        "Standard deviations of the coefficients: of the record so far, and of record and next run together.",
-        vec![Item::from(sigmas(plan))],
+        "Runs, standard deviations and what is told apart: of the record so far, and of record and next run together.",
+        tables,
     )];
     if !plan.proposals.is_empty() {
         sections.push(section(
@@ -28,8 +30,8 @@ pub fn of_plan(plan: &PlanResult) -> Part {
     sections.push(section(
         "words",
         "In words",
-        "The answer as the command prints it, with all its tables.",
-        prose(plan).into_iter().map(Item::Words).collect(),
+        "The answer as the command prints it.",
+        words,
     ));
     Part {
         name: match plan.records.len() {
@@ -60,43 +62,6 @@ fn attitude(plan: &PlanResult, proposal: &Proposal) -> String {
 
 fn hours(proposal: &Proposal) -> String {
     format!("{} h", format::short(proposal.duration_s / 3600.0, 3))
-}
-
-/// Sigmas of the coefficients now, of going on, and of the best run.
-fn sigmas(plan: &PlanResult) -> Table {
-    let number = Column::numbers;
-    let word = Column::words;
-    let going_on = plan.going_on.first().map(|run| &run.outlook.coefficients);
-    let best = plan.proposals.first().map(|run| &run.outlook.coefficients);
-    let cell = |all: Option<&Vec<Forecast>>, place: usize| {
-        let one = all.and_then(|all| all.get(place));
-        Cell::from(one.map_or_else(String::new, |one| format::short(one.sigma, 2)))
-    };
-    let rows = plan
-        .now
-        .coefficients
-        .iter()
-        .enumerate()
-        .map(|(place, now)| {
-            vec![
-                Cell::from(now.name.to_string()),
-                Cell::from(format::short(now.sigma, 2)),
-                cell(going_on, place),
-                cell(best, place),
-                Cell::from(now.unit.to_string()),
-            ]
-        });
-    Table {
-        title: "Standard deviations of the coefficients".to_owned(),
-        columns: vec![
-            word("coefficient"),
-            number("record so far"),
-            number("continued"),
-            number("with the best run"),
-            word("unit"),
-        ],
-        rows: rows.collect(),
-    }
 }
 
 /// Ratio of the sigmas of each proposal.

@@ -1,47 +1,83 @@
 //! The sections of an uncertainty budget, and of the scatter over runs.
 
 use gyrocal_diagnosis::{
-    CoefficientUncertainty, NOT_STATED, RecordUncertainty, RunSpread, by_source,
+    CoefficientUncertainty, NOT_STATED, RecordUncertainty, RunSpread, UncertaintyResult, by_source,
 };
-use gyrocal_document::{Cell, Column, Item, Section, Table};
+use gyrocal_document::{Column, Item, Screen, Section, Standing, Table};
 use gyrocal_statistics::format;
 
 use crate::diagnosis::section;
+
+/// The first screen of uncertainty budgets.
+#[must_use]
+pub fn uncertainty_screen(found: &UncertaintyResult) -> Screen {
+    let what = match &found.spread {
+        None => "95 % intervals of the coefficients".to_owned(),
+        Some(spread) => format!("coefficients over {} runs", spread.runs),
+    };
+    let mut screen = Screen::new(Standing::Neutral, "UNCERTAINTY", what);
+    if found.spread.is_none() {
+        for one in found.records.iter().flat_map(|record| &record.coefficients) {
+            let sources = by_source(one);
+            let largest = sources.iter().max_by(|a, b| a.3.total_cmp(&b.3));
+            let words = format!(
+                "{} {} (k = {}), most by {}",
+                format::with_sigma(one.estimate, one.expanded),
+                one.unit,
+                format::short(one.coverage_factor, 3),
+                largest.map_or("", |line| line.0),
+            );
+            screen.fact(&one.name, words);
+        }
+    }
+    if let Some(spread) = &found.spread {
+        // Intervals of each run are in the tables: those of many do not fit on a screen.
+        for one in &spread.coefficients {
+            let [mean, expected] = format::estimate(one.mean, one.expected);
+            let words = format!(
+                "mean {mean} {}, deviation {} ({expected} expected)",
+                one.unit,
+                format::short(one.standard_deviation, 2),
+            );
+            screen.fact(&one.name, words);
+        }
+        let larger = spread.coefficients.iter().filter(|one| one.is_larger);
+        let names: Vec<&str> = larger.map(|one| one.name.as_str()).collect();
+        let words = match names.is_empty() {
+            true => "consistent with the uncertainties".to_owned(),
+            false => format!("larger than the uncertainties: {}", names.join(", ")),
+        };
+        screen.fact("scatter", format!("of {} runs {words}", spread.runs));
+    }
+    screen
+}
 
 /// The budget of each coefficient: a table of the results, one of the contributions, one of the conditions
 /// of the test.
 #[must_use]
 pub fn of_budget(budget: &RecordUncertainty) -> Section {
-    let results = Table {
-        title: "Results".to_owned(),
-        columns: columns(
-            &["term", "coefficient"],
-            &[
-                "estimate",
-                "standard uncertainty",
-                "effective degrees of freedom",
-                "coverage factor",
-                "expanded, 95 %",
-            ],
-            &["unit"],
-        ),
-        rows: budget.coefficients.iter().map(result_row).collect(),
-    };
-    let names: Vec<&str> = budget
-        .coefficients
-        .iter()
-        .map(|one| one.name.as_str())
-        .collect();
-    let sources = budget
-        .coefficients
-        .first()
-        .map_or(0, |one| by_source(one).len());
-    let contributions = Table {
-        title: "Contributions, each as a standard uncertainty in the unit of its coefficient"
-            .to_owned(),
-        columns: columns(&["source", "type", "distribution"], &names, &[]),
-        rows: (0..sources).map(|line| source_row(budget, line)).collect(),
-    };
+    let columns = "term | coefficient | > estimate | > standard uncertainty | > effective degrees of freedom \
+                   | > coverage factor | > expanded, 95 % | unit";
+    let rows = budget.coefficients.iter().map(result_row);
+    let results = Table::new("Results", Column::heads(columns), rows);
+    let rows = budget.coefficients.iter().flat_map(|one| {
+        let sources = by_source(one).into_iter();
+        sources.map(|(source, kind, distribution, standard)| {
+            let standard = match standard {
+                0.0 => "0".to_owned(),
+                some => format!("{some:.1e}"),
+            };
+            let words = [source, kind.letter(), distribution].map(str::to_owned);
+            [
+                vec![one.name.clone()],
+                words.into(),
+                vec![standard, one.unit.clone()],
+            ]
+            .concat()
+        })
+    });
+    let columns = "coefficient | source | type | distribution | > standard uncertainty | unit";
+    let contributions = Table::new("Contributions", Column::heads(columns), rows);
     let mut lead = format!(
         "Combined by the GUM (JCGM 100:2008). Type A is evaluated from the record, type B from what the \
          bench description declares. {NOT_STATED}"
@@ -78,23 +114,11 @@ pub fn of_spread(spread: &RunSpread) -> Section {
             one.answer().to_owned(),
             one.unit.clone(),
         ]
-        .map(Cell::from)
-        .to_vec()
     });
-    let table = Table {
-        title: format!("Scatter over {} runs", spread.runs),
-        columns: columns(
-            &["term", "coefficient"],
-            &[
-                "mean",
-                "standard deviation between runs",
-                "expected of the uncertainties",
-                "p",
-            ],
-            &["scatter", "unit"],
-        ),
-        rows: rows.collect(),
-    };
+    let columns = "term | coefficient | > mean | > standard deviation between runs \
+                   | > expected of the uncertainties | > p | scatter | unit";
+    let title = format!("Scatter over {} runs", spread.runs);
+    let table = Table::new(&title, Column::heads(columns), rows);
     section(
         "spread",
         "Scatter over runs",
@@ -105,19 +129,7 @@ pub fn of_spread(spread: &RunSpread) -> Section {
     )
 }
 
-/// Columns of words, of numbers, and again of words.
-fn columns(words: &[&str], numbers: &[&str], last: &[&str]) -> Vec<Column> {
-    let of = |heads: &[&str], is_number| -> Vec<Column> {
-        let heads = heads.iter().map(|head| Column {
-            head: (*head).to_owned(),
-            is_number,
-        });
-        heads.collect()
-    };
-    [of(words, false), of(numbers, true), of(last, false)].concat()
-}
-
-fn result_row(one: &CoefficientUncertainty) -> Vec<Cell> {
+fn result_row(one: &CoefficientUncertainty) -> [String; 8] {
     let degrees = match one.effective_degrees_of_freedom {
         Some(few) if few < 1e6 => format!("{few:.0}"),
         _ => "∞".to_owned(),
@@ -132,71 +144,52 @@ fn result_row(one: &CoefficientUncertainty) -> Vec<Cell> {
         format!("{:.2e}", one.expanded),
         one.unit.clone(),
     ]
-    .map(Cell::from)
-    .to_vec()
-}
-
-fn source_row(budget: &RecordUncertainty, line: usize) -> Vec<Cell> {
-    let mut row = Vec::new();
-    for one in &budget.coefficients {
-        let sources = by_source(one);
-        let Some((source, kind, distribution, standard)) = sources.get(line) else {
-            continue;
-        };
-        if row.is_empty() {
-            row.extend([*source, kind.letter(), *distribution].map(|it| Cell::from(it.to_owned())));
-        }
-        row.push(Cell::from(match *standard {
-            0.0 => "0".to_owned(),
-            some => format!("{some:.1e}"),
-        }));
-    }
-    row
 }
 
 /// Conditions of the test.
 fn conditions(budget: &RecordUncertainty) -> Table {
     let of = &budget.conditions;
-    let mut rows = vec![
+    let angles = of
+        .initial_angles_deg
+        .map(|[x, y, z]| format!("{x:.4}°, {y:.4}°, {z:.4}°"));
+    let temperature = of
+        .temperature_c
+        .map(|[low, high]| format!("{low:.2} °C to {high:.2} °C"));
+    let noise = [
+        format!("{:e} g", of.accel_noise_g),
+        format!("{} deg/h", of.gyro_noise_deg_per_h),
+    ];
+    let force = format!("{} g", of.specific_force_at_rest_g);
+    let rows = [
         ("record", budget.name.clone()),
         ("bench", of.bench.clone()),
         ("astronomic latitude", format!("{}°", of.latitude_deg)),
-        (
-            "specific force at rest",
-            format!("{} g", of.specific_force_at_rest_g),
-        ),
+        ("specific force at rest", force),
         (
             "duration, rows",
             format!("{:.2} h, {}", of.duration_h, of.rows),
         ),
         (
             "declared noise of accelerometers, of gyros",
-            format!(
-                "{:e} g, {} deg/h",
-                of.accel_noise_g, of.gyro_noise_deg_per_h
-            ),
+            noise.join(", "),
+        ),
+        (
+            "accelerometer values",
+            budget.accelerometer_values.to_string(),
+        ),
+        (
+            "innovation squared of a value, normalised: mean",
+            format!("{:.3}", budget.nis_of_value),
+        ),
+        (
+            "initial angles",
+            angles.unwrap_or("not declared".to_owned()),
+        ),
+        (
+            "temperature",
+            temperature.unwrap_or("not logged".to_owned()),
         ),
     ];
-    rows.push((
-        "initial angles",
-        of.initial_angles_deg
-            .map_or("not declared".to_owned(), |[x, y, z]| {
-                format!("{x:.4}°, {y:.4}°, {z:.4}°")
-            }),
-    ));
-    rows.push((
-        "temperature",
-        of.temperature_c
-            .map_or("not logged".to_owned(), |[low, high]| {
-                format!("{low:.2} °C to {high:.2} °C")
-            }),
-    ));
-    Table {
-        title: "Test conditions".to_owned(),
-        columns: columns(&["condition", "value"], &[], &[]),
-        rows: rows
-            .into_iter()
-            .map(|(name, value)| vec![Cell::from(name.to_owned()), Cell::from(value)])
-            .collect(),
-    }
+    let rows = rows.map(|(name, value)| [name.to_owned(), value]);
+    Table::new("Test conditions", Column::heads("condition | value"), rows)
 }

@@ -13,11 +13,6 @@ pub(crate) fn unlisted(answer: &Answer) -> Option<Item> {
         };
         format!("{}: probability {probability}", finding.effect)
     });
-    let entries: Vec<String> = causes.collect();
-    (!entries.is_empty()).then(|| {
-        Item::from(List {
-            title: "The cause is outside of the catalogue, in the place of".to_owned(),
-            entries,
-        })
-    })
+    let title = "The cause is outside of the catalogue, in the place of";
+    List::of(title, causes).map(Item::from)
 }

@@ -11,7 +11,6 @@ use gyrocal_record::{
 use gyrocal_statistics::format;
 
 pub use screen::calibration_screen;
-pub use tables::calibration_tables;
 
 use crate::diagnosis::is_correlation;
 
@@ -19,8 +18,7 @@ use crate::diagnosis::is_correlation;
 /// change the consistency test of a record of some days.
 const SIGNIFICANT_WALK_SHARE: f64 = 0.05;
 
-/// Records, verdict, what is determined, noise and site of a calibration, in reading order. The coefficients are
-/// those of [`calibration_tables`].
+/// Records, verdict, what is determined, noise and site of a calibration, in reading order.
 #[must_use]
 pub fn calibration(report: &CalibrationReport) -> Vec<Words> {
     let records = report.records.iter().map(record_line);

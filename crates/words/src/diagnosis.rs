@@ -23,13 +23,24 @@ pub use limits::{
     why_not_distinguished, would_distinguish,
 };
 pub use records::files;
+pub use tables::{over_sets, ranking, residuals, shifts};
 pub use tests::residual_description;
 pub use verdict::{not_settled, setup};
 
-/// The whole answer in reading order: record, verdict, magnitude test, findings, limits, gain,
-/// residual test, tables.
+/// The whole answer in reading order: what is told of it, then its tables.
 #[must_use]
 pub fn diagnosis(result: &Answer) -> Vec<Words> {
+    let mut blocks = told(result);
+    if result.verdict != Verdict::Setup {
+        blocks.extend(tables::all(result));
+    }
+    blocks
+}
+
+/// The answer in reading order without the tables of its numbers: record, verdict, magnitude test, findings,
+/// limits, gain, residual test.
+#[must_use]
+pub fn told(result: &Answer) -> Vec<Words> {
     let mut blocks = vec![
         Words::Paragraph(verdict::record(result)),
         Words::Paragraph(verdict::verdict(result)),
@@ -47,7 +58,7 @@ pub fn diagnosis(result: &Answer) -> Vec<Words> {
     blocks.extend(gain::paragraphs(result).map(Words::Paragraph));
     blocks.push(Words::Paragraph(tests::whiteness(result)));
     blocks.push(Words::Paragraph(tests::allan(result)));
-    blocks.extend(tables::all(result));
+    blocks.extend(tables::findings(result).map(Words::Table));
     blocks.extend(tests::noise_audit(result).map(Words::Paragraph));
     blocks.extend(limits::untested(result));
     blocks

@@ -15,12 +15,12 @@ mod files;
 mod format;
 pub mod plant;
 
-pub use calibration::{calibration, calibration_screen, calibration_tables};
+pub use calibration::{calibration, calibration_screen};
 pub use diagnosis::{
     SET_UPS_WITHOUT_ANGLES, diagnosis, explained, files, first_screen, groups, is_correlation,
-    likelihood, may_also_be, near_twins, not_settled, not_tested, parameter_values,
-    residual_description, setup, tested, time_is_temperature, typical_size, why_not_distinguished,
-    would_distinguish,
+    likelihood, may_also_be, near_twins, not_settled, not_tested, over_sets, parameter_values,
+    ranking, residual_description, residuals, setup, shifts, tested, time_is_temperature, told,
+    typical_size, why_not_distinguished, would_distinguish,
 };
 pub use files::{command_files, few, first_input_files, input_files, record_and_bench};
 pub use format::{NO_P, counted, tested as tested_p};

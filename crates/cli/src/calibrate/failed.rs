@@ -1,15 +1,12 @@
 //! Errors of `gyrocal calibrate`, with advice.
 
-use std::fmt::Display;
 use std::path::Path;
 
 use gyrocal::EstimationError;
 use gyrocal_calibration::{CalibrationError, Run, is_gyro_noise_implausible};
 use gyrocal_record::{CalibrationMethod, CalibrationReport, printable_path};
-use miette::Diagnostic;
 
-use crate::Failure;
-use crate::noise::GYRO_ADVICE;
+use crate::advice::{GYRO_ADVICE, advised};
 
 /// The records could not be calibrated; its help is the advice.
 #[derive(Debug, thiserror::Error)]
@@ -111,24 +108,12 @@ impl WrongSetup {
             written,
         }
     }
-}
 
-impl Diagnostic for WrongSetup {
-    fn code<'a>(&'a self) -> Option<Box<dyn Display + 'a>> {
-        Some(Box::new("gyrocal::calibrate::setup"))
-    }
-
-    fn help<'a>(&'a self) -> Option<Box<dyn Display + 'a>> {
+    fn advice(&self) -> String {
         let Self { written, .. } = self;
-        Some(Box::new(format!(
+        format!(
             "mend the record or its bench file: docs/setup-checks.md lists what is checked{written}"
-        )))
-    }
-}
-
-impl From<WrongSetup> for Failure {
-    fn from(error: WrongSetup) -> Self {
-        Self::Work(error.into())
+        )
     }
 }
 
@@ -142,18 +127,7 @@ fn place(why: &CalibrationError) -> Option<usize> {
     }
 }
 
-impl Diagnostic for NotCalibrated {
-    fn code<'a>(&'a self) -> Option<Box<dyn Display + 'a>> {
-        Some(Box::new("gyrocal::calibrate"))
-    }
-
-    fn help<'a>(&'a self) -> Option<Box<dyn Display + 'a>> {
-        Some(Box::new(self.advice()))
-    }
-}
-
-impl From<NotCalibrated> for Failure {
-    fn from(error: NotCalibrated) -> Self {
-        Self::Work(error.into())
-    }
+advised! {
+    WrongSetup, "gyrocal::calibrate::setup";
+    NotCalibrated, "gyrocal::calibrate";
 }

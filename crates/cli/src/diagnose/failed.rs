@@ -1,15 +1,12 @@
 //! Errors of `gyrocal diagnose`, with advice.
 
-use std::fmt::Display;
 use std::path::Path;
 
 use gyrocal_calibration::{CalibrationError, is_gyro_noise_implausible};
 use gyrocal_diagnosis::DiagnosisError;
 use gyrocal_record::{Bench, printable_path};
-use miette::Diagnostic;
 
-use crate::Failure;
-use crate::noise::GYRO_ADVICE;
+use crate::advice::{GYRO_ADVICE, advised};
 
 /// The record could not be diagnosed; its help is the advice.
 #[derive(Debug, thiserror::Error)]
@@ -78,18 +75,6 @@ impl NotDiagnosed {
     }
 }
 
-impl Diagnostic for NotDiagnosed {
-    fn code<'a>(&'a self) -> Option<Box<dyn Display + 'a>> {
-        Some(Box::new("gyrocal::diagnose"))
-    }
-
-    fn help<'a>(&'a self) -> Option<Box<dyn Display + 'a>> {
-        Some(Box::new(self.advice()))
-    }
-}
-
-impl From<NotDiagnosed> for Failure {
-    fn from(error: NotDiagnosed) -> Self {
-        Self::Work(error.into())
-    }
+advised! {
+    NotDiagnosed, "gyrocal::diagnose";
 }

@@ -8,7 +8,6 @@ use gyrocal_pages::{Part, of_diagnosis, of_result, pictures as charts};
 use gyrocal_record::{Bench, InputRole, Outputs, RecordFile, printable_path};
 
 use super::{DiagnoseArguments, NotDiagnosed, exit_code};
-use crate::layout::layout;
 use crate::outputs::{manifest_of, stage_answer};
 use crate::pictures::Named;
 use crate::progress::Progress;
@@ -61,10 +60,7 @@ pub(super) fn run(
     found.together.result.manifest = manifest_of(MODEL_HASH, options.seed, inputs)?;
     let result = &found.together.result;
     tracing::info!(verdict = ?result.verdict, "diagnosed");
-    let mut answer = Reply::of(
-        gyrocal_words::first_screen(result),
-        layout(&gyrocal_words::diagnosis(result)),
-    );
+    let mut answer = Reply::of_answer(result);
     let mut outputs = Outputs::new();
     if arguments.views.are_asked() {
         let mut parts = vec![of_result(result)];

@@ -38,13 +38,11 @@ pub(super) fn first(arguments: &StrapdownArguments, report: &ImportReport) -> Sc
         false => Screen::new(Standing::Good, "IMPORTED", what),
     };
     for (name, [rate, sigma], expected) in pairs {
-        screen.fact(
-            &format!("{name} rate"),
-            format!(
-                "{rate:.4} ± {sigma:.4} deg/h, Earth {expected:.4}, difference {:.4}",
-                rate - expected
-            ),
+        let words = format!(
+            "{rate:.4} ± {sigma:.4} deg/h, Earth {expected:.4}, difference {:.4}",
+            rate - expected
         );
+        screen.fact(&format!("{name} rate"), words);
     }
     if far {
         screen.fact(
@@ -63,26 +61,22 @@ fn record(arguments: &StrapdownArguments, report: &ImportReport, screen: &mut Sc
         "heading",
         format!("body y points {:.3} deg from north", report.heading_deg),
     );
-    screen.fact(
-        "disturbed",
-        format!(
-            "{:.0} s in {} windows, {}",
-            disturbed_s(report),
-            report.disturbed_s.len(),
-            if arguments.keep_disturbed {
-                "kept"
-            } else {
-                "written as missing"
-            }
-        ),
+    let words = format!(
+        "{:.0} s in {} windows, {}",
+        disturbed_s(report),
+        report.disturbed_s.len(),
+        if arguments.keep_disturbed {
+            "kept"
+        } else {
+            "written as missing"
+        }
     );
-    screen.fact(
-        "noise",
-        format!(
-            "{:.2e} g per row, gyros at most {:.4} deg/h held over one minute",
-            report.accel_noise_g, report.gyro_noise_deg_per_h
-        ),
+    screen.fact("disturbed", words);
+    let words = format!(
+        "{:.2e} g per row, gyros at most {:.4} deg/h held over one minute",
+        report.accel_noise_g, report.gyro_noise_deg_per_h
     );
+    screen.fact("noise", words);
     screen.fact(
         "not told",
         "bias from terms in specific force; drift toward east from the heading",

@@ -1,15 +1,11 @@
 //! Errors of `gyrocal plan`, with advice.
 
-use std::fmt::Display;
 use std::path::Path;
 
 use gyrocal_design::DesignError;
 use gyrocal_record::printable_path;
-use miette::Diagnostic;
 
-use crate::Failure;
-
-const CODE: &str = "gyrocal::plan";
+use crate::advice::advised;
 
 /// No next run could be planned; its help is the advice.
 #[derive(Debug, thiserror::Error)]
@@ -31,6 +27,13 @@ pub(super) struct OtherInput {
     pub(super) given: String,
     pub(super) found: String,
     pub(super) expected: String,
+}
+
+impl OtherInput {
+    fn advice(&self) -> &'static str {
+        "diagnose these records with these bench files, in this order, or leave --diagnosis out: the command then \
+         diagnoses them"
+    }
 }
 
 impl NotPlanned {
@@ -63,37 +66,7 @@ impl NotPlanned {
     }
 }
 
-impl Diagnostic for NotPlanned {
-    fn code<'a>(&'a self) -> Option<Box<dyn Display + 'a>> {
-        Some(Box::new(CODE))
-    }
-
-    fn help<'a>(&'a self) -> Option<Box<dyn Display + 'a>> {
-        Some(Box::new(self.advice()))
-    }
-}
-
-impl Diagnostic for OtherInput {
-    fn code<'a>(&'a self) -> Option<Box<dyn Display + 'a>> {
-        Some(Box::new(CODE))
-    }
-
-    fn help<'a>(&'a self) -> Option<Box<dyn Display + 'a>> {
-        Some(Box::new(
-            "diagnose these records with these bench files, in this order, or leave --diagnosis out: the \
-             command then diagnoses them",
-        ))
-    }
-}
-
-impl From<NotPlanned> for Failure {
-    fn from(error: NotPlanned) -> Self {
-        Self::Work(error.into())
-    }
-}
-
-impl From<OtherInput> for Failure {
-    fn from(error: OtherInput) -> Self {
-        Self::Work(error.into())
-    }
+advised! {
+    NotPlanned, "gyrocal::plan";
+    OtherInput, "gyrocal::plan";
 }

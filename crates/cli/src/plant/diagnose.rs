@@ -3,21 +3,19 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use gyrocal_answer::{Answer, Coefficients, write_text};
-use gyrocal_pages::{Part, of_plant, pictures};
+use gyrocal_answer::write_text;
+use gyrocal_pages::{Part, of_plant, of_result, pictures};
 use gyrocal_plant::{
     ColumnMap, DiagnosedRecords, LoadedPlant, NamedRecord, PlantError, SearchOptions,
     diagnose_records,
 };
 use gyrocal_record::{Manifest, Outputs, printable_path};
-use gyrocal_statistics::format;
 use miette::Report;
 
 use crate::numbers::probability;
 use crate::outputs::{self, manifest, same_file};
 use crate::page::Views;
 use crate::progress::Progress;
-use crate::tables::{right, table};
 use crate::{Failure, Reply, page};
 
 /// Find what the model of this plant lacks in a record, or in several.
@@ -93,7 +91,7 @@ pub(super) fn run(
     let manifest = manifest("", options.seed, &inputs)?;
     found.together.answer.manifest = manifest.clone();
     let answer = &found.together.answer;
-    let mut shown = Reply::of(gyrocal_words::plant::first_screen(answer), details(answer));
+    let mut shown = Reply::of_part(&of_result(answer));
     let mut outputs = Outputs::new();
     if arguments.views.are_asked() {
         let parts = parts(&found, arguments, &manifest)?;
@@ -160,45 +158,4 @@ fn checked_inputs<'a>(
         )));
     }
     Ok(inputs)
-}
-
-fn details(answer: &Answer) -> String {
-    let parameters = answer.coefficients.iter().map(|all| estimates("", all));
-    let records = answer.records.iter();
-    let initial = records.filter_map(|one| Some(estimates(&one.name, one.initial.as_ref()?)));
-    let mut noise = table(vec!["noise", "over the declared one", "95 %"]);
-    for one in &answer.noise {
-        let [low, high] = one.interval.map(|end| format::significant(end, 3));
-        noise.add_row(vec![
-            one.channel.as_str().into(),
-            right(format::significant(one.ratio, 3)),
-            right(format!("{low} to {high}")),
-        ]);
-    }
-    let tables = parameters.chain(initial);
-    tables.chain([format!("{noise}\n")]).collect()
-}
-
-fn estimates(title: &str, all: &Coefficients) -> String {
-    let mut shown = table(vec![
-        title,
-        "unit",
-        "declared",
-        "nominal",
-        "with findings",
-        "sigma",
-    ]);
-    let models = all.nominal.iter().zip(all.best());
-    for (declared, (nominal, best)) in all.declared.iter().zip(models) {
-        let number = |value: f64| right(format::significant(value, 5));
-        shown.add_row(vec![
-            best.name.as_str().into(),
-            best.unit.as_str().into(),
-            number(*declared),
-            number(nominal.estimate),
-            number(best.estimate),
-            right(format::significant(best.sigma, 2)),
-        ]);
-    }
-    format!("{shown}\n\n")
 }

@@ -48,13 +48,11 @@ pub(crate) fn run(arguments: &NewPlantArguments) -> Result<Reply, Failure> {
         format!("{name} has a plant to begin with and a command to diagnose it."),
     );
     screen.fact("built with", from);
-    screen.fact(
-        "next",
-        format!(
-            "cd {} && cargo run -- diagnose data.csv --columns columns.toml",
-            shell_quoted(&printable_path(&arguments.name))
-        ),
+    let words = format!(
+        "cd {} && cargo run -- diagnose data.csv --columns columns.toml",
+        shell_quoted(&printable_path(&arguments.name))
     );
+    screen.fact("next", words);
     let mut shown = Reply::of(screen, String::new());
     for file in &package.files {
         shown.wrote(&arguments.name.join(file.path), file.what);

@@ -134,7 +134,7 @@ fn a_description_stands_for_columns_and_rate() {
     ]);
     assert!(text.contains("steady clock"), "{text}");
     assert!(
-        text.contains("gyro_z: overlapping Hadamard deviation [deg/h]"),
+        text.contains("Overlapping Hadamard deviation") && text.contains("deviation, deg/h"),
         "{text}"
     );
     let json: serde_json::Value = serde_json::from_str(&folder.text("o.json")).unwrap();

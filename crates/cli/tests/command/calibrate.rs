@@ -74,12 +74,15 @@ fn the_table_shows_what_the_json_says_rounded_by_its_sigma() {
     let said = folder.succeed(&JSON);
     let report: CalibrationReport = serde_json::from_str(&folder.text("o.json")).unwrap();
     for coefficient in report.coefficients {
-        // The table of the first screen and that of errors of the site come before it.
-        let row = said
-            .lines()
+        // The table of the first screen comes before that of the details.
+        let rows = said.lines();
+        let rows: Vec<&str> = rows
             .filter(|line| line.starts_with(&format!(" {} ", coefficient.name)))
-            .nth(2)
-            .unwrap_or_else(|| panic!("no {} in {said}", coefficient.name));
+            .collect();
+        let [_, row, meaning, ..] = rows[..] else {
+            panic!("no {} in {said}", coefficient.name);
+        };
+        assert!(meaning.contains(" of gyro "), "{meaning}");
         let cells: Vec<&str> = row.split_whitespace().collect();
         let [estimate, sigma] = [cells[1], cells[3]].map(|cell| cell.parse::<f64>().unwrap());
         // Half a unit of the second digit of sigma is at most a twentieth of it.
@@ -89,7 +92,6 @@ fn the_table_shows_what_the_json_says_rounded_by_its_sigma() {
         assert_eq!(cells[3].trim_start_matches(['0', '.']).len(), 2, "{row}");
         assert_eq!(cells[2], "±", "{row}");
         assert_eq!(cells[4..6], [&coefficient.unit[..], "yes"], "{row}");
-        assert!(row.contains(" of gyro "), "{row}");
     }
 }
 
@@ -282,7 +284,7 @@ fn verbose_tells_more() {
         .unwrap();
     assert!(detailed.0.starts_with(screen), "{}", detailed.0);
     assert!(
-        detailed.0.contains("Sensitivity to site errors"),
+        detailed.0.contains("Sensitivity to errors of the site"),
         "{}",
         detailed.0
     );

@@ -5,7 +5,6 @@ use gyrocal_answer::{Answer, CoefficientEstimate, CoefficientShift};
 use gyrocal_calibration::{Estimates as Fitted, FittedPlatform, SiteBias, SiteQuantity};
 use gyrocal_document::{
     Band, Cell, Chart, Column, EstimateRow, Estimates, Item, Panel, Section, Table, TimeAxis, Tint,
-    ValueWithSigma,
 };
 use gyrocal_record::Record;
 
@@ -33,21 +32,16 @@ pub(super) fn section(result: &Answer, convergence: Option<Chart>) -> Option<Sec
     let shifts = result.gain.as_ref().filter(|_| models.len() > 1);
     let rows = all.nominal.iter().enumerate().map(|(place, one)| {
         let note = shifts.map(|gain| change(&gain.coefficient_shift, &one.name));
-        let of = |model: &Vec<CoefficientEstimate>| {
+        let of = |model: &&Vec<CoefficientEstimate>| {
             let one = model.get(place);
-            ValueWithSigma {
-                value: one.map_or(f64::NAN, |one| one.estimate),
-                sigma: one.map_or(f64::NAN, |one| one.sigma),
-            }
+            one.map_or([f64::NAN; 2], |one| [one.estimate, one.sigma])
         };
+        let (note, strong) = note.map_or_else(Default::default, |note| (note.text, note.strong));
+        let row = EstimateRow::new(&one.name, &one.unit, models.iter().map(of));
         EstimateRow {
-            name: one.name.clone(),
-            unit: one.unit.clone(),
-            values: models.iter().map(|model| of(model)).collect(),
-            note: note
-                .as_ref()
-                .map_or_else(String::new, |note| note.text.clone()),
-            strong: note.is_some_and(|note| note.strong),
+            note,
+            strong,
+            ..row
         }
     });
     let effects = accepted(result);
@@ -65,6 +59,7 @@ pub(super) fn section(result: &Answer, convergence: Option<Chart>) -> Option<Sec
         note_head: shifts.map_or_else(String::new, |_| "change, σ of the nominal fit".to_owned()),
     })];
     items.extend(convergence.map(Item::Chart));
+    items.extend(gyrocal_words::over_sets(all).map(Item::from));
     Some(titled(
         "coefficients",
         "Coefficients",
@@ -157,16 +152,9 @@ fn add(panel: &mut Panel, (label, tint): (&str, Tint), fitted: &[Option<Fitted>]
 /// Sensitivity of the coefficients to the site.
 pub(crate) fn site(fit: &FittedPlatform<'_>) -> Result<Section, PageError> {
     let biases = fit.site_biases()?;
-    let mut columns = vec![Column {
-        head: "coefficient".to_owned(),
-        is_number: false,
-    }];
+    let mut columns = vec![Column::words("coefficient")];
     for bias in &biases {
-        let number = |head: String| Column {
-            head,
-            is_number: true,
-        };
-        columns.extend([number(site_error(bias)), number("in σ".to_owned())]);
+        columns.extend([site_error(bias).as_str(), "in σ"].map(Column::numbers));
     }
     let rows = DRIFT.iter().enumerate().map(|(index, element)| {
         let mut row = vec![Cell::from(format!("{} [{}]", element.id, element.unit))];

@@ -3,7 +3,7 @@
 use gyrocal_answer::{Answer, Gain, Prediction};
 use gyrocal_diagnosis::LaterPrediction;
 use gyrocal_document::{
-    Cell, Chart, Column, Item, Line, LineKind, Panel, Section, Table, TimeAxis, Tint,
+    Chart, Column, Item, Line, LineKind, Panel, Section, Table, TimeAxis, Tint,
 };
 
 use super::section as titled;
@@ -16,7 +16,7 @@ pub(super) fn section(result: &Answer, later: Option<&LaterPrediction>) -> Optio
     let mut items = vec![Item::Chart(blocks(gain))];
     items.extend(later.map(|later| Item::Chart(drift(later))));
     items.push(Item::from(figures(gain)));
-    items.push(Item::from(shifts(gain)));
+    items.push(Item::from(gyrocal_words::shifts(gain)));
     Some(titled(
         "gain",
         "Gain",
@@ -128,7 +128,7 @@ fn drift(later: &LaterPrediction) -> Chart {
 fn figures(gain: &Gain) -> Table {
     let mut rows = Vec::new();
     rows.extend(gain.free_run_rms_g.map(|rms| {
-        vec![
+        [
             "open-loop error, rms".to_owned(),
             micro_g(rms.before),
             micro_g(rms.after),
@@ -138,7 +138,7 @@ fn figures(gain: &Gain) -> Table {
     if let Some(later) = &gain.validation
         && let Some(error) = &later.compensation
     {
-        rows.push(vec![
+        rows.push([
             format!(
                 "attitude error in the later record after {:.1} h",
                 error.after_h
@@ -147,45 +147,13 @@ fn figures(gain: &Gain) -> Table {
             format!("{:.2} arcmin", error.extended_arcmin),
             format!("{:.2} arcmin", error.expected_arcmin),
         ]);
-        rows.push(vec![
+        rows.push([
             "predictive log score of the later record, extended less nominal".to_owned(),
             String::new(),
             format!("{:+.1} nats", later.log_score_nats),
             String::new(),
         ]);
     }
-    Table {
-        title: "Nominal and extended model".to_owned(),
-        columns: vec![
-            Column::words("figure"),
-            Column::numbers("nominal"),
-            Column::numbers("extended"),
-            Column::numbers("expected"),
-        ],
-        rows: rows
-            .into_iter()
-            .map(|row| row.into_iter().map(Cell::from).collect())
-            .collect(),
-    }
-}
-
-fn shifts(gain: &Gain) -> Table {
-    let rows = gain.coefficient_shift.iter().map(|shift| {
-        vec![
-            Cell::from(shift.coefficient.clone()),
-            Cell::from(format!("{:+.2e}", shift.shift).replace('-', "−")),
-            Cell::from(shift.unit.clone()),
-            super::coefficients::change(core::slice::from_ref(shift), &shift.coefficient),
-        ]
-    });
-    Table {
-        title: "Changes of the coefficients".to_owned(),
-        columns: vec![
-            Column::words("coefficient"),
-            Column::numbers("change"),
-            Column::words("unit"),
-            Column::numbers("in σ of the nominal fit"),
-        ],
-        rows: rows.collect(),
-    }
+    let columns = Column::heads("figure | > nominal | > extended | > expected");
+    Table::new("Nominal and extended model", columns, rows)
 }

@@ -1,7 +1,7 @@
 //! What a diagnosis cannot tell, and the next run.
 
 use gyrocal_answer::{Answer, Verdict};
-use gyrocal_document::{Cell, Column, Item, List, Section, Table};
+use gyrocal_document::{Column, Item, List, Section, Table};
 use gyrocal_statistics::format;
 
 use super::section;
@@ -39,7 +39,6 @@ pub(super) fn cannot_tell(result: &Answer) -> Section {
 
 /// Effects that were not tested or would not be detected.
 fn undetected(result: &Answer) -> Option<Table> {
-    let word = Column::words;
     let rows = result.not_searched.iter().map(|effect| {
         let mut power = result.power.iter();
         let power = power.find(|power| power.effect == effect.effect);
@@ -47,30 +46,12 @@ fn undetected(result: &Answer) -> Option<Table> {
             format!("{} {}", format::short(power.typical_size, 3), power.unit)
         });
         let chance = power.and_then(|power| power.power);
-        vec![
-            Cell::from(effect.effect.clone()),
-            Cell::from(effect.why.clone()),
-            Cell::from(size),
-            Cell::from(chance.map_or_else(String::new, format::percent)),
-        ]
+        let chance = chance.map_or_else(String::new, format::percent);
+        [effect.effect.clone(), effect.why.clone(), size, chance]
     });
-    let rows: Vec<_> = rows.collect();
-    (!rows.is_empty()).then(|| Table {
-        title: "Not tested, or not detectable in this record".to_owned(),
-        columns: vec![
-            word("effect"),
-            word("reason"),
-            Column {
-                head: "typical size".to_owned(),
-                is_number: true,
-            },
-            Column {
-                head: "chance of detection".to_owned(),
-                is_number: true,
-            },
-        ],
-        rows,
-    })
+    let columns = Column::heads("effect | reason | > typical size | > chance of detection");
+    let title = "Not tested, or not detectable in this record";
+    (!result.not_searched.is_empty()).then(|| Table::new(title, columns, rows))
 }
 
 /// The command that plans the next run.

@@ -32,7 +32,7 @@ pub fn of_diagnosis(diagnosis: &Diagnosis<'_>, bench: &Bench) -> Result<Part, Pa
         effects: accepted(result),
     };
     let mut sections: Vec<Section> = open_loop::sections(&simulated)?.into();
-    sections.extend(ranking::section(Ranked::of(result).as_ref()));
+    sections.extend(ranked(result));
     let fits = (&diagnosis.nominal, diagnosis.extended.as_ref());
     let convergence = coefficients::convergence(&diagnosis.record, fits)?;
     sections.extend(coefficients::section(result, convergence));
@@ -51,7 +51,7 @@ pub fn of_diagnosis(diagnosis: &Diagnosis<'_>, bench: &Bench) -> Result<Part, Pa
 pub(crate) fn of_platform(result: &Answer) -> Part {
     let mut sections = Vec::new();
     if result.verdict != Verdict::Setup {
-        sections.extend(ranking::section(Ranked::of(result).as_ref()));
+        sections.extend(ranked(result));
         sections.extend(coefficients::section(result, None));
         sections.push(limits::cannot_tell(result));
         sections.push(residuals::section(result, Vec::new()));
@@ -79,17 +79,19 @@ fn part(result: &Answer, sections: Vec<Section>) -> Part {
     }
 }
 
-/// The whole answer as the command prints it.
+/// The ranking with its table.
+fn ranked(result: &Answer) -> Option<Section> {
+    let mut section = ranking::section(Ranked::of(result).as_ref())?;
+    let table = gyrocal_words::ranking(result);
+    section.items.extend(table.map(Item::from));
+    Some(section)
+}
+
+/// The whole answer as the command prints it, without the tables that the other sections have.
 fn in_words(result: &Answer) -> Section {
-    Section {
-        id: "words".to_owned(),
-        title: "In words".to_owned(),
-        lead: "The answer as the command prints it, with all its tables.".to_owned(),
-        items: gyrocal_words::diagnosis(result)
-            .into_iter()
-            .map(Item::Words)
-            .collect(),
-    }
+    let told = gyrocal_words::told(result).into_iter();
+    let lead = "The answer as the command prints it.";
+    section("words", "In words", lead, told.map(Item::Words).collect())
 }
 
 /// Effects in the extended model.

@@ -2,7 +2,7 @@
 
 use gyrocal_answer::{Answer, ResidualTest, Residuals};
 use gyrocal_diagnosis::{ChannelCorrelation, ChannelSpectrum, Diagnosis, ModelVersion};
-use gyrocal_document::{Cell, Chart, Column, Item, Level, Mark, Panel, Section, Table, Tint};
+use gyrocal_document::{Chart, Column, Item, Level, Mark, Panel, Section, Table, Tint};
 use gyrocal_record::AXES;
 use gyrocal_statistics::format::{self, p_cell};
 
@@ -20,6 +20,7 @@ const LJUNG_BOX: &str = "correlation over rows (Ljung-Box)";
 pub(super) fn section(result: &Answer, charts: Vec<Chart>) -> Section {
     let mut items = vec![Item::from(tests(result))];
     items.extend(charts.into_iter().map(Item::Chart));
+    items.extend(gyrocal_words::residuals(result).map(Item::from));
     titled(
         "residuals",
         "Innovations",
@@ -58,15 +59,7 @@ fn correlation(channels: Vec<ChannelCorrelation>) -> Chart {
     let known = known.flat_map(|one| &one.correlation);
     let total = known.filter(|value| !value.is_nan()).count();
     let nominal = outside(ModelVersion::Nominal);
-    let title = if has_extended {
-        let extended = outside(ModelVersion::Extended);
-        format!(
-            "{nominal} of {total} autocorrelations outside the 95 % band for the nominal model, \
-             {extended} for the extended one"
-        )
-    } else {
-        format!("{nominal} of {total} autocorrelations outside the 95 % band")
-    };
+    let extended = has_extended.then(|| outside(ModelVersion::Extended));
     let panels = (0..3).map(|axis| {
         let of_axis: Vec<_> = channels.iter().filter(|one| one.axis == axis).collect();
         let half = of_axis.first().map_or(f64::NAN, |one| one.band);
@@ -84,21 +77,7 @@ fn correlation(channels: Vec<ChannelCorrelation>) -> Chart {
         };
         panels::correlation(AXES[axis].to_owned(), note, half, lines.collect())
     });
-    Chart {
-        title,
-        caption: format!(
-            "One in twenty is outside by chance: {} of {total}.",
-            total / 20
-        ),
-        abscissa: "lag".to_owned(),
-        abscissa_unit: "rows".to_owned(),
-        quantity: "correlation".to_owned(),
-        same_scale: true,
-        panels: panels.collect(),
-        columns: 3,
-        height_px: 190,
-        ..Chart::default()
-    }
+    panels::correlations([nominal, total], extended, panels.collect())
 }
 
 /// The strongest line above the threshold.
@@ -210,20 +189,11 @@ fn tests(result: &Answer) -> Table {
         let name = "magnitude of specific force (accelerometers alone)".to_owned();
         ("none", name, String::new(), norm.p_value)
     }));
-    let rows = all.into_iter().map(|(model, name, found, p)| {
-        let cells = [model.to_owned(), name, found, p_cell(p)];
-        cells.map(Cell::from).to_vec()
-    });
-    Table {
-        title: "Tests, and probability of as much by chance".to_owned(),
-        columns: vec![
-            Column::words("model"),
-            Column::words("test"),
-            Column::words("found"),
-            Column::numbers("p"),
-        ],
-        rows: rows.collect(),
-    }
+    let rows = all
+        .into_iter()
+        .map(|(model, name, found, p)| [model.to_owned(), name, found, p_cell(p)]);
+    let columns = Column::heads("model | test | found | > p");
+    Table::new("Tests, and probability of as much by chance", columns, rows)
 }
 
 fn ljung_box(statistic: f64, degrees_of_freedom: usize) -> String {

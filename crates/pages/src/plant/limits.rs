@@ -1,51 +1,32 @@
 //! What a record of a plant cannot tell.
 
 use gyrocal_answer::Answer;
-use gyrocal_document::{Cell, Column, Item, List, Section, Table};
+use gyrocal_document::{Column, Item, List, Section, Table};
 
 use crate::diagnosis::section;
 use crate::unlisted::unlisted;
 
 pub(super) fn cannot_tell(answer: &Answer) -> Section {
-    let mut items = Vec::new();
-    let list = |title: &str, entries: Vec<String>| {
-        (!entries.is_empty()).then(|| {
-            Item::from(List {
-                title: title.to_owned(),
-                entries,
-            })
-        })
-    };
-    let directions = |is_gauge: bool| -> Vec<String> {
+    let directions = |is_gauge: bool| {
         let all = answer.undetermined.iter();
-        let own = all.filter(|one| one.is_gauge == is_gauge);
-        own.map(gyrocal_words::plant::direction).collect()
+        let own = all.filter(move |one| one.is_gauge == is_gauge);
+        own.map(gyrocal_words::plant::direction)
     };
-    items.extend(list(
-        "Gauges: no record of this plant shows them",
-        directions(true),
-    ));
-    items.extend(list("Not excited in this record", directions(false)));
     let still = answer.still_inputs.iter();
-    items.extend(list(
-        "Inputs that never move",
-        still
-            .map(|input| format!("{input}: nothing that depends on it can be told from a constant"))
-            .collect(),
-    ));
+    let still = still
+        .map(|input| format!("{input}: nothing that depends on it can be told from a constant"));
+    let gauges = "Gauges: no record of this plant shows them";
+    let lists = [
+        List::of(gauges, directions(true)),
+        List::of("Not excited in this record", directions(false)),
+        List::of("Inputs that never move", still),
+    ];
+    let mut items: Vec<Item> = lists.into_iter().flatten().map(Item::from).collect();
     if !answer.not_searched.is_empty() {
-        let column = |head: &str| Column {
-            head: head.to_owned(),
-            is_number: false,
-        };
         let rows = answer.not_searched.iter();
-        items.push(Item::from(Table {
-            title: "Effects that were not tested".to_owned(),
-            columns: vec![column("effect"), column("reason")],
-            rows: rows
-                .map(|one| vec![Cell::from(one.effect.clone()), Cell::from(one.why.clone())])
-                .collect(),
-        }));
+        let rows = rows.map(|one| [one.effect.clone(), one.why.clone()]);
+        let columns = Column::heads("effect | reason");
+        items.push(Table::new("Effects that were not tested", columns, rows).into());
     }
     if items.is_empty() {
         let all = match answer.is_settled() {

@@ -5,13 +5,13 @@ mod over_time;
 mod tables;
 
 use gyrocal_answer::Answer;
-use gyrocal_document::{Item, List, Part, Section};
+use gyrocal_document::{Part, Section};
 use gyrocal_plant::Diagnosed;
 use gyrocal_record::Manifest;
 use gyrocal_statistics::format;
 use gyrocal_words::counted;
 
-use crate::diagnosis::{ranking, section};
+use crate::diagnosis::ranking;
 use crate::error::PageError;
 use crate::origin::{file_name, origin};
 use crate::ranked::Ranked;
@@ -40,6 +40,7 @@ pub(crate) fn of_answer(answer: &Answer) -> Part {
     sections.extend(tables::parameters(answer));
     sections.extend(tables::records(answer));
     sections.extend(tables::gain(answer, None));
+    sections.push(over_time::tested(answer, None));
     sections.push(limits::cannot_tell(answer));
     let name = match answer.records.len() {
         0 => file_name(&answer.manifest, 0, "record"),
@@ -48,16 +49,7 @@ pub(crate) fn of_answer(answer: &Answer) -> Part {
     part(answer, &name, &answer.manifest, sections)
 }
 
-fn part(answer: &Answer, name: &str, manifest: &Manifest, mut sections: Vec<Section>) -> Part {
-    sections.push(section(
-        "words",
-        "In words",
-        "The answer as the command prints it.",
-        vec![Item::from(List {
-            title: String::new(),
-            entries: gyrocal_words::plant::all(answer),
-        })],
-    ));
+fn part(answer: &Answer, name: &str, manifest: &Manifest, sections: Vec<Section>) -> Part {
     Part {
         name: name.to_owned(),
         size: size(answer),

@@ -1,7 +1,7 @@
 //! Outputs over time, and tests of the innovations.
 
 use gyrocal_answer::{Answer, OutputError};
-use gyrocal_document::{Cell, Chart, Column, Item, Panel, Section, Table, TimeAxis};
+use gyrocal_document::{Chart, Column, Item, Panel, Section, Table, TimeAxis};
 use gyrocal_plant::{Diagnosed, OutputCorrelation, OutputSeries, RecordSeries};
 use gyrocal_statistics::format::{self, p_cell};
 use gyrocal_statistics::{NORMAL_97_5, rms_of_present};
@@ -161,16 +161,20 @@ pub(super) fn innovations(diagnosed: &Diagnosed) -> Result<Section, PageError> {
         .into_iter()
         .filter(|one| !one.nominal.is_empty())
         .collect();
-    let mut items = vec![Item::from(tests(&diagnosed.answer))];
-    if !found.is_empty() {
-        items.push(Item::Chart(correlations(&found)));
-    }
-    Ok(section(
+    let chart = (!found.is_empty()).then(|| correlations(&found));
+    Ok(tested(&diagnosed.answer, chart))
+}
+
+/// Tests of the innovations in a table, with a chart of their correlations if it is there.
+pub(super) fn tested(answer: &Answer, chart: Option<Chart>) -> Section {
+    let mut items = vec![Item::from(tests(answer))];
+    items.extend(chart.map(Item::Chart));
+    section(
         "residuals",
         "Innovations",
         "One-step innovations of a right model are white: no correlation over rows.",
         items,
-    ))
+    )
 }
 
 fn correlations(found: &[OutputCorrelation]) -> Chart {
@@ -183,34 +187,16 @@ fn correlations(found: &[OutputCorrelation]) -> Chart {
     };
     let total: usize = found.iter().map(|one| one.nominal.len()).sum();
     let nominal = count(&|one| Some(&one.nominal));
-    let title = if found.iter().any(|one| one.extended.is_some()) {
-        format!(
-            "{nominal} of {total} autocorrelations outside the 95 % band for the nominal model, {} for the \
-             extended one",
-            count(&|one| one.extended.as_ref())
-        )
-    } else {
-        format!("{nominal} of {total} autocorrelations outside the 95 % band")
-    };
+    let has_extended = found.iter().any(|one| one.extended.is_some());
+    let extended = has_extended.then(|| count(&|one| one.extended.as_ref()));
     let panels = found.iter().map(|one| {
         let lines = panels::of_models(one.nominal.clone(), one.extended.clone());
         let note = format!("{} innovations", one.values);
         panels::correlation(one.output.clone(), note, one.band, lines)
     });
     Chart {
-        title,
-        caption: format!(
-            "One in twenty is outside by chance: {} of {total}.",
-            total / 20
-        ),
-        abscissa: "lag".to_owned(),
-        abscissa_unit: "rows".to_owned(),
-        quantity: "correlation".to_owned(),
-        same_scale: true,
         columns: found.len().clamp(1, COLUMNS),
-        panels: panels.collect(),
-        height_px: 190,
-        ..Chart::default()
+        ..panels::correlations([nominal, total], extended, panels.collect())
     }
 }
 
@@ -220,24 +206,15 @@ fn tests(answer: &Answer) -> Table {
         let [low, high] = noise.interval.map(|end| format::short(end, 3));
         let mut left = answer.remainder.outputs.iter();
         let left = left.find(|one| one.output == noise.channel);
-        let cells = [
+        [
             noise.channel.clone(),
             format::short(noise.ratio, 3),
             format!("{low} to {high}"),
             left.map_or_else(String::new, |left| p_cell(left.p_value)),
-        ];
-        cells.map(Cell::from).to_vec()
+        ]
     });
-    Table {
-        title:
-            "Noise, and correlation over rows that the model with all findings leaves (Ljung-Box)"
-                .to_owned(),
-        columns: vec![
-            Column::words("noise of"),
-            Column::numbers("over the declared one"),
-            Column::numbers("95 % interval"),
-            Column::numbers("p of white innovations"),
-        ],
-        rows: rows.collect(),
-    }
+    let title =
+        "Noise, and correlation over rows that the model with all findings leaves (Ljung-Box)";
+    let columns = "noise of | > over the declared one | > 95 % interval | > p of white innovations";
+    Table::new(title, Column::heads(columns), rows)
 }

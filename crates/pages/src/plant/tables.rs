@@ -1,29 +1,13 @@
 //! Sets, parameters, records and gain of a plant in tables.
 
 use gyrocal_answer::{AlternativeKind, Answer, Coefficients, Finding, OutputError};
-use gyrocal_document::{
-    Cell, Column, EstimateRow, Estimates, Item, Section, Table, Tint, ValueWithSigma,
-};
+use gyrocal_document::{Column, EstimateRow, Estimates, Item, Section, Table, Tint};
 use gyrocal_plant::Diagnosed;
 use gyrocal_statistics::format;
 
 use super::{over_time, rms};
 use crate::diagnosis::section;
 use crate::panels;
-
-fn word(head: &str) -> Column {
-    Column {
-        head: head.to_owned(),
-        is_number: false,
-    }
-}
-
-fn number(head: &str) -> Column {
-    Column {
-        head: head.to_owned(),
-        is_number: true,
-    }
-}
 
 /// Each finding with its set; `None` if nothing was found.
 pub(super) fn sets(answer: &Answer) -> Option<Section> {
@@ -67,22 +51,13 @@ fn set(answer: &Answer, found: &Finding) -> Table {
         };
         [other.effect.clone(), String::new(), lacks, place.to_owned()]
     });
-    let rows = core::iter::once(named).chain(others);
-    let rows = rows.map(|row| row.map(Cell::from).to_vec());
-    Table {
-        title: match found.alternatives.len() {
-            0 if answer.is_settled() => format!("{}: its set has no other effect", found.effect),
-            0 => format!("{}: no other effect of what was compared", found.effect),
-            count => format!("{} and {count} more in its set", found.effect),
-        },
-        columns: vec![
-            word("effect"),
-            word("meaning"),
-            number("size, or nats less likely"),
-            word("place"),
-        ],
-        rows: rows.collect(),
-    }
+    let title = match found.alternatives.len() {
+        0 if answer.is_settled() => format!("{}: its set has no other effect", found.effect),
+        0 => format!("{}: no other effect of what was compared", found.effect),
+        count => format!("{} and {count} more in its set", found.effect),
+    };
+    let columns = Column::heads("effect | meaning | > size, or nats less likely | place");
+    Table::new(&title, columns, core::iter::once(named).chain(others))
 }
 
 /// Parameters, and initial states of a record that is alone; `None` without a fit.
@@ -107,16 +82,11 @@ fn estimates(title: &str, all: &Coefficients) -> Estimates {
     let pairs = all.nominal.iter().zip(all.best());
     let rows = all.declared.iter().zip(pairs);
     let rows = rows.map(|(declared, (nominal, extended))| {
-        let values = [nominal, extended].map(|one| ValueWithSigma {
-            value: one.estimate,
-            sigma: one.sigma,
-        });
+        let values = [nominal, extended].map(|one| [one.estimate, one.sigma]);
+        let values = values.into_iter().take(models.len());
         EstimateRow {
-            name: nominal.name.clone(),
-            unit: nominal.unit.clone(),
-            values: values.into_iter().take(models.len()).collect(),
             note: format::short(*declared, 4).replace('-', "−"),
-            strong: false,
+            ..EstimateRow::new(&nominal.name, &nominal.unit, values)
         }
     });
     Estimates {
@@ -133,33 +103,22 @@ pub(super) fn records(answer: &Answer) -> Option<Section> {
         return None;
     }
     let rows = answer.records.iter().map(|one| {
-        let cells = [
+        [
             one.name.clone(),
             one.record.rows.to_string(),
             format::short(one.record.duration_s, 4),
             gyrocal_words::plant::alone(one),
-        ];
-        cells.map(Cell::from).to_vec()
+        ]
     });
-    let mut items = vec![Item::from(Table {
-        title: "Each record alone".to_owned(),
-        columns: vec![
-            word("record"),
-            number("rows"),
-            number("duration, s"),
-            word("verdict alone"),
-        ],
-        rows: rows.collect(),
-    })];
+    let columns = Column::heads("record | > rows | > duration, s | verdict alone");
+    let mut items = vec![Item::from(Table::new("Each record alone", columns, rows))];
     for one in &answer.records {
-        items.push(Item::from(error_table(
-            format!(
-                "{}: open-loop error with the models of all records",
-                one.name
-            ),
-            &one.open_loop,
-            answer.has_findings(),
-        )));
+        let title = format!(
+            "{}: open-loop error with the models of all records",
+            one.name
+        );
+        let table = error_table(&title, &one.open_loop, answer.has_findings());
+        items.push(Item::from(table));
         let title = format!("Initial states of {}", one.name);
         let initial = one.initial.iter();
         items.extend(initial.map(|all| Item::Estimates(estimates(&title, all))));
@@ -172,25 +131,19 @@ pub(super) fn records(answer: &Answer) -> Option<Section> {
     ))
 }
 
-fn error_table(title: String, errors: &[OutputError], has_findings: bool) -> Table {
-    let mut columns = vec![word("output"), number("nominal model, rms")];
-    if has_findings {
-        columns.push(number("with what was found, rms"));
-    }
-    let count = columns.len();
+fn error_table(title: &str, errors: &[OutputError], has_findings: bool) -> Table {
+    let mut columns = Column::heads("output | > nominal model, rms | > with what was found, rms");
+    let count = if has_findings { 3 } else { 2 };
+    columns.truncate(count);
     let rows = errors.iter().map(|error| {
         let cells = [
             error.output.clone(),
             rms(error.nominal, &error.unit),
             rms(error.extended, &error.unit),
         ];
-        cells.into_iter().take(count).map(Cell::from).collect()
+        cells.into_iter().take(count)
     });
-    Table {
-        title,
-        rows: rows.collect(),
-        columns,
-    }
+    Table::new(title, columns, rows)
 }
 
 /// The gain in the record and on a later one, with charts of the later one if its diagnosis is there; `None` if
@@ -202,7 +155,7 @@ pub(super) fn gain(answer: &Answer, diagnosed: Option<&Diagnosed>) -> Option<Sec
     let open_loop = |of: &str, horizon_s: Option<f64>, errors: &[OutputError]| {
         let over = format::short(horizon_s.unwrap_or_default(), 4);
         let title = format!("Open-loop error in {of}, simulated over {over} s");
-        Item::from(error_table(title, errors, true))
+        Item::from(error_table(&title, errors, true))
     };
     let mut items = vec![open_loop(
         "the diagnosed data",

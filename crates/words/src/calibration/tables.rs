@@ -10,16 +10,6 @@ use super::has_several;
 /// Quantities of the site, in the order in which they are told.
 const QUANTITIES: [&str; 3] = ["latitude", "earth_rate", "gravity"];
 
-/// The coefficients, and with given effects in the model these, too.
-#[must_use]
-pub fn calibration_tables(report: &CalibrationReport) -> Vec<Table> {
-    if !report.usable {
-        return Vec::new();
-    }
-    let tables = [Some(coefficients(report)), with_effects(report)];
-    tables.into_iter().flatten().collect()
-}
-
 /// Effects that were given, turn-ons, sigmas from the first record alone, errors of the site.
 pub(super) fn further(report: &CalibrationReport) -> Vec<Table> {
     let tables = [
@@ -46,53 +36,13 @@ pub(super) fn is_mass_unbalance(name: &str) -> bool {
     meaning(name).starts_with("D_I of")
 }
 
-fn coefficients(report: &CalibrationReport) -> Table {
-    let rows = report.coefficients.iter().map(|one| {
-        [
-            one.name.clone(),
-            format!("{} {}", value(one.estimate, one.sigma), one.unit),
-            if one.determined { "yes" } else { "no" }.to_owned(),
-            meaning(&one.name).to_owned(),
-        ]
-    });
-    let columns = ["coefficient", "estimate", "determined", "meaning"];
-    Table::new(
-        "Drift coefficients",
-        columns.map(Column::words).into(),
-        rows,
-    )
-}
-
-/// The coefficients with and without the effects that were given.
-fn with_effects(report: &CalibrationReport) -> Option<Table> {
-    let with = report.with_effects.as_ref()?;
-    let names: Vec<&str> = with.effects.iter().map(|one| &*one.effect).collect();
-    let title = format!(
-        "Coefficients with {} in the model, which gains {:.1} nats of log-likelihood",
-        names.join(", "),
-        with.gained_nats
-    );
-    let pairs = report.coefficients.iter().zip(&with.coefficients);
-    let coefficients = pairs.map(|(nominal, with)| {
-        [
-            nominal.name.clone(),
-            value(nominal.estimate, nominal.sigma),
-            value(with.estimate, with.sigma),
-            nominal.unit.clone(),
-        ]
-    });
-    let columns = vec![
-        Column::words("coefficient"),
-        Column::numbers("nominal model"),
-        Column::numbers("with these effects"),
-        Column::words("unit"),
-    ];
-    Some(Table::new(&title, columns, coefficients))
-}
-
 /// The parameters of the effects that were given.
 fn given_effects(report: &CalibrationReport) -> Option<Table> {
     let with = report.with_effects.as_ref()?;
+    let title = format!(
+        "Effects in the model, which gain {:.1} nats of log-likelihood",
+        with.gained_nats
+    );
     let effects = with.effects.iter().flat_map(|effect| {
         effect.parameters.iter().map(|own| {
             let pieces = own.interval.iter().flatten();
@@ -117,7 +67,7 @@ fn given_effects(report: &CalibrationReport) -> Option<Table> {
         Column::numbers("95 % interval"),
         Column::words("unit"),
     ];
-    Some(Table::new("Effects in the model", columns, effects))
+    Some(Table::new(&title, columns, effects))
 }
 
 /// Offsets of the turn-ons from the mean constant drifts; `None` if turn-ons are declared alike.

@@ -23,15 +23,13 @@ pub(super) fn clean(result: &Answer) -> Screen {
             "the record fits the model and the declared noise",
         ),
     };
-    screen.fact(
-        "how sure",
-        format!(
-            "{} tested, false-alarm rate {}; {}",
-            counted(result.ranking.len(), "effect"),
-            percent(result.false_alarm_probability),
-            remainder(result).replace("nothing: ", "")
-        ),
+    let words = format!(
+        "{} tested, false-alarm rate {}; {}",
+        counted(result.ranking.len(), "effect"),
+        percent(result.false_alarm_probability),
+        remainder(result).replace("nothing: ", "")
     );
+    screen.fact("how sure", words);
     screen.fact("may still hide", undetected(result));
     screen.fact("not tested", untested(result));
     if let Some(nis) = result.residuals.as_ref().and_then(|shown| shown.nis) {

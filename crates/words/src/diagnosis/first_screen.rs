@@ -102,13 +102,11 @@ fn found(result: &Answer) -> Screen {
     if !is_settled {
         screen.fact("not settled", verdict::not_settled(result));
     }
-    screen.fact(
-        "how sure",
-        format!(
-            "{} of sound records would show any effect by chance",
-            percent(result.false_alarm_probability)
-        ),
+    let words = format!(
+        "{} of sound records would show any effect by chance",
+        percent(result.false_alarm_probability)
     );
+    screen.fact("how sure", words);
     screen.fact("may also be", may_also_be(result));
     effect_on_fit(result, &mut screen);
     screen.fact("left over", remainder(result));
@@ -223,18 +221,16 @@ fn effect_on_fit(result: &Answer, screen: &mut Screen) {
     if let Some(validation) = &gain.validation
         && let Some(error) = &validation.compensation
     {
-        screen.fact(
-            "later record",
-            format!(
-                "{:+.1} nats with it; attitude after {} h of compensation off by {} → {} arcmin ({} \
-                 expected)",
-                validation.log_score_nats,
-                format::short(error.after_h, 3),
-                format::short(error.nominal_arcmin, 2),
-                format::short(error.extended_arcmin, 2),
-                format::short(error.expected_arcmin, 2)
-            ),
+        let words = format!(
+            "{:+.1} nats with it; attitude after {} h of compensation off by {} → {} arcmin ({} \
+             expected)",
+            validation.log_score_nats,
+            format::short(error.after_h, 3),
+            format::short(error.nominal_arcmin, 2),
+            format::short(error.extended_arcmin, 2),
+            format::short(error.expected_arcmin, 2)
         );
+        screen.fact("later record", words);
     }
     let mut shifts: Vec<_> = gain.coefficient_shift.iter().collect();
     shifts.sort_by(|a, b| b.in_sigmas.abs().total_cmp(&a.in_sigmas.abs()));
@@ -311,14 +307,12 @@ fn unexplained(result: &Answer) -> Screen {
         "the record contradicts the model, and no effect of the catalogue explains it",
     );
     screen.fact("what is seen", &*test.description);
-    screen.fact(
-        "how sure",
-        format!(
-            "{}; {} of sound records would show any effect by chance",
-            tested(test.p_value),
-            percent(result.false_alarm_probability)
-        ),
+    let words = format!(
+        "{}; {} of sound records would show any effect by chance",
+        tested(test.p_value),
+        percent(result.false_alarm_probability)
     );
+    screen.fact("how sure", words);
     screen.fact(
         "may also be",
         "an effect that the catalogue lacks: docs/adding-a-term.md adds one",
@@ -373,7 +367,7 @@ fn wrong_setup(result: &Answer) -> Screen {
     }
     if result.setup.len() > PROBLEMS_SHOWN {
         let more = result.setup.len() - PROBLEMS_SHOWN;
-        screen.fact("and", format!("{more} more: --verbose lists them"));
+        screen.fact("and", format!("{more} more"));
     }
     let lost: Vec<&str> = SetupKind::ALL
         .iter()

@@ -9,16 +9,11 @@ use gyrocal_document::{List, Words};
 
 /// Groups of indistinguishable effects, each with the experiment that would distinguish them.
 pub(super) fn indistinguishable(result: &Answer) -> Option<Words> {
-    let entries = groups(result);
-    (!entries.is_empty()).then(|| {
-        Words::List(List {
-            title: "Not distinguishable, and the experiment that would distinguish them".to_owned(),
-            entries: entries
-                .into_iter()
-                .map(|[members, why, words]| format!("{members}: {why}. Experiment: {words}."))
-                .collect(),
-        })
-    })
+    let entries = groups(result).into_iter();
+    let entries =
+        entries.map(|[members, why, words]| format!("{members}: {why}. Experiment: {words}."));
+    let title = "Not distinguishable, and the experiment that would distinguish them";
+    List::of(title, entries).map(Words::List)
 }
 
 /// Groups of effects and of set-ups that the record does not distinguish: their names, why, and the experiment that
@@ -49,15 +44,9 @@ pub(super) fn untested(result: &Answer) -> Option<Words> {
             .or_default()
             .push(&effect.effect);
     }
-    (!by_reason.is_empty()).then(|| {
-        Words::List(List {
-            title: "Not tested, or not detectable in this record".to_owned(),
-            entries: by_reason
-                .into_iter()
-                .map(|(why, effects)| format!("{}: {why}", effects.join(", ")))
-                .collect(),
-        })
-    })
+    let entries = by_reason.into_iter();
+    let entries = entries.map(|(why, effects)| format!("{}: {why}", effects.join(", ")));
+    List::of("Not tested, or not detectable in this record", entries).map(Words::List)
 }
 
 /// Why set-ups are not distinguished where no angles are declared.

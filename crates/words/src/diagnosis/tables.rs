@@ -17,32 +17,27 @@ const TOP: usize = 12;
 /// An interval that spans more than this factor says that the record does not determine the noise.
 const UNDETERMINED: f64 = 100.0;
 
-/// All tables.
+/// All tables but that of the findings.
 pub(super) fn all(result: &Answer) -> impl Iterator<Item = Words> {
-    let tables = [
-        findings(result),
-        result.coefficients.as_ref().and_then(coefficients),
-        result
-            .residuals
-            .as_ref()
-            .map(|shown| residuals(shown, result.record.duration_s / 3600.0)),
-        ranking(result),
-        result.gain.as_ref().map(shifts),
-        noise(result),
-    ];
-    tables.into_iter().flatten().map(Words::Table)
+    let coefficients = result.coefficients.as_ref().and_then(over_sets);
+    let gain = result.gain.as_ref().map(shifts);
+    let tables = [coefficients, ranking(result), gain];
+    let tables = tables.into_iter().flatten().chain(residuals(result));
+    tables.map(Words::Table)
 }
 
-fn findings(result: &Answer) -> Option<Table> {
-    let columns = vec![
-        Column::words("effect"),
-        Column::words("parameter"),
-        Column::numbers("estimate"),
-        Column::words("unit"),
-        Column::numbers("z"),
-        Column::numbers("p"),
-        Column::numbers("gain, nats"),
-    ];
+/// What the nominal model leaves of the record, and the noise.
+pub fn residuals(result: &Answer) -> impl Iterator<Item = Table> {
+    let of_nominal = result
+        .residuals
+        .as_ref()
+        .map(|shown| of_nominal(shown, result.record.duration_s / 3600.0));
+    of_nominal.into_iter().chain(noise(result))
+}
+
+pub(super) fn findings(result: &Answer) -> Option<Table> {
+    let columns =
+        Column::heads("effect | parameter | > estimate | unit | > z | > p | > gain, nats");
     let mut rows = Vec::new();
     for finding in &result.findings {
         let mut head = [
@@ -72,8 +67,9 @@ fn findings(result: &Answer) -> Option<Table> {
     (!rows.is_empty()).then(|| Table::new("Findings", columns, rows))
 }
 
-/// The coefficients of the extended model; `None` if no effect was accepted.
-fn coefficients(shown: &Coefficients) -> Option<Table> {
+/// The coefficients of the extended model with their intervals over the sets; `None` if no effect was accepted.
+#[must_use]
+pub fn over_sets(shown: &Coefficients) -> Option<Table> {
     let over_set = shown.over_set.as_ref()?;
     let extended = shown.extended.as_ref()?;
     let of = |one: &CoefficientEstimate| with_sigma(one.estimate, one.sigma);
@@ -94,13 +90,7 @@ fn coefficients(shown: &Coefficients) -> Option<Table> {
     Some(Table::new(
         "Drift coefficients, noise as estimated; the 95 % interval is over all members of the confidence sets, \
                 weighted by their likelihoods",
-        vec![
-            Column::words("coefficient"),
-            Column::numbers("nominal model"),
-            Column::numbers("extended model"),
-            Column::numbers("95 % interval"),
-            Column::words("unit"),
-        ],
+        Column::heads("coefficient | > nominal model | > extended model | > 95 % interval | unit"),
         rows,
     ))
 }
@@ -115,7 +105,7 @@ fn gain(finding: &Finding) -> String {
     }
 }
 
-fn residuals(shown: &Residuals, duration_h: f64) -> Table {
+fn of_nominal(shown: &Residuals, duration_h: f64) -> Table {
     let nis = shown.nis.map_or_else(String::new, |nis| {
         let [low, high] = nis.band;
         format!(
@@ -178,7 +168,9 @@ fn residuals(shown: &Residuals, duration_h: f64) -> Table {
     )
 }
 
-fn ranking(result: &Answer) -> Option<Table> {
+/// The first effects of the search by their statistics; `None` without a search.
+#[must_use]
+pub fn ranking(result: &Answer) -> Option<Table> {
     let all = &result.ranking;
     let threshold = result.threshold.map_or_else(String::new, |threshold| {
         format!("; detection threshold {threshold:.1}")
@@ -188,11 +180,7 @@ fn ranking(result: &Answer) -> Option<Table> {
              onset or time constant){threshold}",
             all.len().min(TOP),
             all.len()
-        ), vec![
-            Column::words("effect"),
-            Column::numbers("statistic"),
-            Column::words(""),
-        ], all
+        ), Column::heads("effect | > statistic | "), all
             .iter()
             .take(TOP)
             .map(|ranked| {
@@ -218,7 +206,9 @@ fn role(result: &Answer, effect: &str) -> String {
     String::new()
 }
 
-fn shifts(gain: &Gain) -> Table {
+/// Changes of the coefficients by the effects in the model.
+#[must_use]
+pub fn shifts(gain: &Gain) -> Table {
     let rows = gain.coefficient_shift.iter().map(|shift| {
         vec![
             shift.coefficient.clone(),
@@ -232,12 +222,7 @@ fn shifts(gain: &Gain) -> Table {
             "Coefficient changes with {} in the model",
             gain.effects.join(", ")
         ),
-        vec![
-            Column::words("coefficient"),
-            Column::numbers("change"),
-            Column::numbers("in sigmas"),
-            Column::words("unit"),
-        ],
+        Column::heads("coefficient | > change | > in sigmas | unit"),
         rows,
     )
 }

@@ -125,10 +125,6 @@ fn low_power(result: &Answer) -> String {
 /// Gross errors of the set-up, as a list; `None` if there are none.
 #[must_use]
 pub fn setup(problems: &[SetupProblem]) -> Option<Words> {
-    (!problems.is_empty()).then(|| {
-        Words::List(List {
-            title: "Errors of the set-up".to_owned(),
-            entries: problems.iter().map(SetupProblem::text).collect(),
-        })
-    })
+    let entries = problems.iter().map(SetupProblem::text);
+    List::of("Errors of the set-up", entries).map(Words::List)
 }

@@ -113,7 +113,7 @@ fn noise_is_told_beside_the_declared_unless_it_is_not_wanted() {
     let mut arguments = JSON.to_vec();
     arguments.push("--no-noise");
     let said = folder.succeed(&arguments);
-    assert!(!said.contains("Estimated / declared noise"), "{said}");
+    assert!(!said.contains("Estimated over declared noise"), "{said}");
     assert_eq!(report(&folder).runs[0].noise, None);
 }
 
@@ -276,7 +276,7 @@ fn bounded_influence_withstands_outliers() {
     assert!((60..110).contains(&bounded), "{bounded}");
     assert!(
         said.contains(&format!(
-            "Robust estimation: reduced weight of {bounded} values"
+            "robust estimation reduced the weight of {bounded} values"
         )),
         "{said}"
     );

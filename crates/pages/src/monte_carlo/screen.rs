@@ -1,14 +1,15 @@
-//! The first screen of `gyrocal monte-carlo`.
+//! The first screen of a calibration over many simulated records.
 
 use gyrocal_document::{Column, Screen, Standing, Table};
-use gyrocal_evaluation::{BandedMean, CalibrationSummary, MeasuredValue};
-use gyrocal_record::printable_path;
+use gyrocal_evaluation::{BandedMean, CalibrationSummary, MonteCarloReport};
 use gyrocal_statistics::format;
 
-use super::MonteCarloArguments;
+use super::{measured, seeds};
+use crate::origin::named;
 
 /// Whether errors are as large as the sigmas say, and by how much they are not.
-pub(super) fn first(arguments: &MonteCarloArguments, summary: &CalibrationSummary) -> Screen {
+pub(super) fn first(report: &MonteCarloReport) -> Screen {
+    let summary = &report.summary;
     let bands = [summary.nees_determined, summary.nis];
     let said = format!(
         "{} runs, {} failed: {}",
@@ -41,7 +42,8 @@ pub(super) fn first(arguments: &MonteCarloArguments, summary: &CalibrationSummar
             format!("seed {}: {}", failure.seed, failure.message),
         );
     }
-    screen.fact("scenario", printable_path(&arguments.scenario));
+    let scenario = named(&report.manifest.inputs);
+    screen.fact("scenario", format!("{scenario}: {}", seeds(report)));
     screen.table = Some(table(summary));
     screen
 }
@@ -54,12 +56,6 @@ fn band(banded: &BandedMean) -> String {
         banded.expected,
         if banded.holds() { "inside" } else { "outside" }
     )
-}
-
-fn measured(found: MeasuredValue, scale: f64, decimals: usize) -> String {
-    let [low, high] = found.interval.map(|bound| scale * bound);
-    let value = scale * found.value;
-    format!("{value:.decimals$} ({low:.decimals$} to {high:.decimals$})")
 }
 
 fn table(summary: &CalibrationSummary) -> Table {
@@ -81,12 +77,7 @@ fn table(summary: &CalibrationSummary) -> Table {
     });
     Table::new(
         "",
-        vec![
-            Column::words("coefficient"),
-            Column::words("bias"),
-            Column::words("RMSE / sigma"),
-            Column::words("in 95 % CI"),
-        ],
+        Column::heads("coefficient | bias | RMSE / sigma | in 95 % CI"),
         rows,
     )
 }

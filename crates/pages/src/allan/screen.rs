@@ -1,18 +1,17 @@
-//! The first screen of `gyrocal allan`.
+//! The first screen of Allan deviations.
 
 use gyrocal_document::{Screen, Standing};
+use gyrocal_instruments::AllanReport;
 use gyrocal_statistics::allan::NoiseFit;
 use gyrocal_statistics::format;
 use gyrocal_words::counted;
-
-use super::Analysed;
 
 /// Columns that are told one by one.
 const COLUMNS_SHOWN: usize = 4;
 
 /// The parts of the noise of each column, and whether they describe it.
-pub(super) fn first(analysed: &Analysed) -> Screen {
-    let columns = &analysed.columns;
+pub(super) fn first(report: &AllanReport, clock: Option<&str>) -> Screen {
+    let columns = &report.columns;
     let described = |noise: &Option<NoiseFit>| noise.as_ref().is_some_and(NoiseFit::is_described);
     let good = columns
         .iter()
@@ -32,11 +31,11 @@ pub(super) fn first(analysed: &Analysed) -> Screen {
         Screen::new(Standing::Doubtful, "NOISE NOT EXPLAINED", what)
     };
     for column in columns.iter().take(COLUMNS_SHOWN) {
-        screen.fact(&column.name, parts(column.noise.as_ref(), &analysed.unit));
+        screen.fact(&column.name, parts(column.noise.as_ref(), &report.unit));
     }
     if columns.len() > COLUMNS_SHOWN {
         let more = columns.len() - COLUMNS_SHOWN;
-        screen.fact("and", format!("{more} more columns: --verbose"));
+        screen.fact("and", format!("{more} more columns"));
     }
     if good < columns.len() {
         screen.fact(
@@ -48,7 +47,7 @@ pub(super) fn first(analysed: &Analysed) -> Screen {
         "intervals",
         "95 %; the flat part of a bias instability B is 0.664 B",
     );
-    screen.fact("clock", analysed.clock.clone().unwrap_or_default());
+    screen.fact("clock", clock.unwrap_or_default());
     screen
 }
 

@@ -1,7 +1,9 @@
-//! The first screen of `gyrocal characterise`.
+//! The first screen of operating characteristics.
 
 use gyrocal_document::{Screen, Standing};
 use gyrocal_evaluation::{CellReport, Characteristic};
+
+use super::{interval, measured, target};
 
 /// Figures that are told one by one.
 const FIGURES_SHOWN: usize = 8;
@@ -26,20 +28,14 @@ pub(super) fn first(reports: &[CellReport]) -> Screen {
         _ => Screen::new(Standing::Bad, "MISSED", what),
     };
     for (report, one) in of(Some(false)).chain(of(None)).take(FIGURES_SHOWN) {
-        let [low, high] = one.interval.unwrap_or([f64::NAN; 2]);
-        let measured = one
-            .measured
-            .map_or_else(String::new, |value| format!("{value:.3}"));
-        let interval = one
-            .interval
-            .map_or_else(String::new, |_| format!(" ({low:.3} to {high:.3})"));
+        let interval = match &*interval(one) {
+            "" => String::new(),
+            some => format!(" ({some})"),
+        };
+        let (measured, target) = (measured(one), target(one));
         screen.fact(
             &report.title,
-            format!(
-                "{}: {measured}{interval}, target {}",
-                one.figure,
-                super::sheet::target(one)
-            ),
+            format!("{}: {measured}{interval}, target {target}", one.figure),
         );
     }
     screen

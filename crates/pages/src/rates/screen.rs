@@ -1,12 +1,12 @@
-//! The first screen of `gyrocal rates`.
+//! The first screen of gyro outputs in the rate domain.
 
 use gyrocal_document::{Screen, Standing};
 use gyrocal_instruments::rates::RateReport;
-use gyrocal_record::printable_path;
+use gyrocal_record::Input;
 use gyrocal_statistics::format;
-use gyrocal_words::counted;
+use gyrocal_words::{counted, few};
 
-use super::RatesArguments;
+use crate::origin::named;
 
 /// Effects that are told one by one.
 const EFFECTS_SHOWN: usize = 4;
@@ -15,7 +15,7 @@ const EFFECTS_SHOWN: usize = 4;
 const NAMES_SHOWN: usize = 3;
 
 /// Effects beyond the base law, biases, and what is not determined.
-pub(super) fn first(arguments: &RatesArguments, report: &RateReport) -> Screen {
+pub(super) fn first(logs: &[Input], report: &RateReport) -> Screen {
     let found: Vec<_> = report
         .gyros
         .iter()
@@ -41,47 +41,33 @@ pub(super) fn first(arguments: &RatesArguments, report: &RateReport) -> Screen {
                 [] => String::new(),
                 names => format!("; may also be {}", names.join(", ")),
             };
-            screen.fact(
-                &effect.name,
-                format!(
-                    "{estimate} {}, {}{others}",
-                    coefficient.unit,
-                    format::p_value(effect.p_value)
-                ),
+            let words = format!(
+                "{estimate} {}, {}{others}",
+                coefficient.unit,
+                format::p_value(effect.p_value)
             );
+            screen.fact(&effect.name, words);
         }
     }
     biases(report, &mut screen);
     if let (true, Some(correlation)) = (report.time_is_temperature, report.time_and_temperature) {
-        screen.fact(
-            "not told",
-            format!(
-                "temperature from time: their correlation is {correlation:.2}; warm the unit up and let \
-                 it cool down"
-            ),
+        let words = format!(
+            "temperature from time: their correlation is {correlation:.2}; warm the unit up and let \
+             it cool down"
         );
+        screen.fact("not told", words);
     }
     let mut undetermined: Vec<&str> = Vec::new();
     for gyro in &report.gyros {
         undetermined.extend(gyro.undetermined.iter().map(String::as_str));
     }
     if !undetermined.is_empty() {
-        let shown = undetermined[..undetermined.len().min(NAMES_SHOWN)].join(", ");
-        let rest = match undetermined.len().saturating_sub(NAMES_SHOWN) {
-            0 => String::new(),
-            rest => format!(" and {rest} more"),
-        };
-        screen.fact(
-            "undetermined",
-            format!("{shown}{rest}: turn the unit over, a log each"),
-        );
+        let names = few(&undetermined, NAMES_SHOWN);
+        let way = format!("{names}: turn the unit over, a log each");
+        screen.fact("undetermined", way);
     }
     let duration_s: f64 = report.logs.iter().map(|log| log.duration_s).sum();
-    let named = match &arguments.logs[..] {
-        [only] => printable_path(only).to_string(),
-        logs => counted(logs.len(), "log"),
-    };
-    screen.fact("log", format!("{named} over {duration_s:.0} s"));
+    screen.fact("log", format!("{} over {duration_s:.0} s", named(logs)));
     screen
 }
 
@@ -89,22 +75,18 @@ pub(super) fn first(arguments: &RatesArguments, report: &RateReport) -> Screen {
 fn biases(report: &RateReport, screen: &mut Screen) {
     if let [log] = &report.logs[..] {
         for (gyro, law) in report.gyros.iter().enumerate() {
-            screen.fact(
-                &law.gyro,
-                format!(
-                    "{:.4} ± {:.4} deg/h (95 %), bias and terms in specific force",
-                    log.bias_deg_per_h[gyro], log.bias_half_width_deg_per_h[gyro]
-                ),
+            let words = format!(
+                "{:.4} ± {:.4} deg/h (95 %), bias and terms in specific force",
+                log.bias_deg_per_h[gyro], log.bias_half_width_deg_per_h[gyro]
             );
+            screen.fact(&law.gyro, words);
         }
         let [rate, sigma] = log.vertical_deg_per_h;
-        screen.fact(
-            "vertical",
-            format!(
-                "{rate:.4} ± {sigma:.4} deg/h, Earth {:.4}",
-                report.earth_vertical_deg_per_h
-            ),
+        let words = format!(
+            "{rate:.4} ± {sigma:.4} deg/h, Earth {:.4}",
+            report.earth_vertical_deg_per_h
         );
+        screen.fact("vertical", words);
         return;
     }
     for gyro in &report.gyros {

@@ -1,0 +1,104 @@
+//! The page of gyro outputs in the rate domain.
+
+mod screen;
+
+use gyrocal_document::{Column, EstimateRow, Estimates, Item, Part, Section, Table, Tint};
+use gyrocal_instruments::rates::{GyroRates, RateReport};
+use gyrocal_record::{Input, Manifest};
+use gyrocal_statistics::{NORMAL_97_5, format};
+
+use crate::diagnosis::section;
+use crate::origin::{file_name, named, origin};
+
+/// The page of gyro outputs in the rate domain. The last file of the manifest describes the logs before it;
+/// `clocks` is what there is to tell of their clocks.
+#[must_use]
+pub fn of_rates(manifest: &Manifest, report: &RateReport, clocks: &[String]) -> Part {
+    let inputs = &manifest.inputs;
+    let logs = inputs.split_last().map_or(&[][..], |(_, logs)| logs);
+    let several = report.logs.len() > 1;
+    let mut sections = vec![means(logs, report, clocks)];
+    sections.extend(report.gyros.iter().map(|gyro| of_gyro(gyro, several)));
+    Part {
+        name: file_name(manifest, 0, "log"),
+        size: named(logs),
+        first: screen::first(logs, report),
+        sections,
+        origin: origin(manifest),
+    }
+}
+
+fn means(logs: &[Input], report: &RateReport, clocks: &[String]) -> Section {
+    let rows = logs.iter().zip(&report.logs).flat_map(|(file, log)| {
+        let row = |of: String, rate: f64, half_width: f64| {
+            [
+                file.path.clone(),
+                of,
+                format!("{rate:.4}"),
+                format!("± {half_width:.4}"),
+            ]
+        };
+        let gyros = report.gyros.iter().enumerate().map(move |(gyro, law)| {
+            let of = format!("{}, less Earth rate", law.gyro);
+            row(
+                of,
+                log.bias_deg_per_h[gyro],
+                log.bias_half_width_deg_per_h[gyro],
+            )
+        });
+        let [rate, sigma] = log.vertical_deg_per_h;
+        let vertical = "vertical, Earth rate and bias".to_owned();
+        gyros.chain([row(vertical, rate, NORMAL_97_5 * sigma)])
+    });
+    let columns = Column::heads("log | of | > mean of the log, deg/h | > 95 %");
+    let mut items: Vec<Item> = clocks.iter().map(Item::text).collect();
+    items.push(Table::new("", columns, rows).into());
+    let lead = format!(
+        "The heading is unknown, and Earth rate is {:.4} deg/h up and {:.4} deg/h north.",
+        report.earth_vertical_deg_per_h, report.earth_horizontal_deg_per_h,
+    );
+    section("means", "Means", &lead, items)
+}
+
+fn of_gyro(gyro: &GyroRates, several: bool) -> Section {
+    let rows = gyro.coefficients.iter();
+    let rows = rows.map(|one| EstimateRow::new(&one.name, &one.unit, [[one.estimate, one.sigma]]));
+    let mut items = vec![Item::Estimates(Estimates {
+        title: String::new(),
+        models: vec![("estimate".to_owned(), Tint::Extended)],
+        rows: rows.collect(),
+        note_head: String::new(),
+    })];
+    if !gyro.undetermined.is_empty() {
+        let names = gyro.undetermined.join(", ");
+        items.push(Item::text(format!("Not determined in addition: {names}.")));
+    }
+    for effect in &gyro.effects {
+        let at = effect.step.map_or_else(String::new, |(time_s, log)| {
+            format!(" at {time_s:.0} s of log {}", log + 1)
+        });
+        let alternatives = match &effect.alternatives[..] {
+            [] => "no alternative".to_owned(),
+            names => format!("alternatives: {}", names.join(", ")),
+        };
+        let p = format::p_value(effect.p_value);
+        let found = format!("Found: {}{at} ({p}); {alternatives}.", effect.name);
+        items.push(Item::text(found));
+    }
+    let noise = &gyro.noise;
+    let between = match several {
+        true => format!(", bias from log to log {:.3e} deg/h", noise.between_logs),
+        false => String::new(),
+    };
+    items.push(Item::text(format!(
+        "Noise: random walk {:.3e} deg/h sqrt(s), bias instability {:.3e} deg/h, rate random walk {:.3e} \
+         deg/h/sqrt(s){between}.",
+        noise.random_walk, noise.bias_instability, noise.rate_random_walk
+    )));
+    section(
+        &gyro.gyro,
+        &gyro.gyro,
+        "Coefficients, effects and noise.",
+        items,
+    )
+}

@@ -1,0 +1,162 @@
+//! The first screen of a multi-position test.
+
+use gyrocal_document::{Screen, Standing};
+use gyrocal_instruments::multi_position::{FewPositionReport, MultiPositionReport};
+use gyrocal_statistics::format;
+use gyrocal_words::{counted, few};
+
+use super::TumbleAnswer;
+use crate::origin::named;
+
+/// Terms that are told one by one.
+const TERMS_SHOWN: usize = 6;
+/// Names of a list that are shown.
+const NAMES_SHOWN: usize = 3;
+
+/// What the nominal law lacks, how sure that is, and what it changes.
+pub(super) fn first(answer: &TumbleAnswer<'_>) -> Screen {
+    let result = answer.result;
+    let mut screen = Screen::default();
+    if let Some(report) = &result.test {
+        screen = many(report);
+    }
+    if let Some(report) = &result.few_positions {
+        screen = few_positions(report);
+    }
+    let words = format!(
+        "{} of sound instruments would show any term by chance",
+        format::percent(answer.false_alarm)
+    );
+    screen.fact("how sure", words);
+    screen.fact(
+        "not told",
+        match answer.prepared.instrument.latitude_deg {
+            Some(_) => "squares along all three axes from the bias (they sum to 1 g²)",
+            None => "squares along all three axes from the bias; g_i from Earth rate (no latitude)",
+        },
+    );
+    // The last file is the description.
+    let logs = answer
+        .manifest
+        .inputs
+        .split_last()
+        .map_or(&[][..], |(_, logs)| logs);
+    let stops = counted(answer.prepared.stops.len(), "static stop");
+    screen.fact("log", format!("{}: {stops}", named(logs)));
+    screen
+}
+
+/// A term with its estimate, unit, p-value, and the names of what it may also be.
+type Term<'a> = (&'a str, [f64; 2], &'a str, f64, Vec<&'a str>);
+
+fn verdict(terms: &[Term<'_>]) -> Screen {
+    let what = format!(
+        "the nominal drift law lacks {}",
+        counted(terms.len(), "term")
+    );
+    let mut screen = match terms {
+        [] => Screen::new(
+            Standing::Good,
+            "LAW HOLDS",
+            "no significant term beyond the nominal drift law",
+        ),
+        _ => Screen::new(Standing::Bad, "TERMS MISSING", what),
+    };
+    for (effect, [estimate, sigma], unit, p, names) in terms.iter().take(TERMS_SHOWN) {
+        let others = match &names[..] {
+            [] => "nothing else of the catalogue".to_owned(),
+            names => format!("may also be {}", few(names, NAMES_SHOWN)),
+        };
+        let (estimate, p) = (format::with_sigma(*estimate, *sigma), format::p_value(*p));
+        screen.fact(effect, format!("{estimate} {unit}, {p}; {others}"));
+    }
+    if terms.len() > TERMS_SHOWN {
+        screen.fact("and", format!("{} more", terms.len() - TERMS_SHOWN));
+    }
+    screen
+}
+
+fn many(report: &MultiPositionReport) -> Screen {
+    let terms = report.findings.iter().map(|one| -> Term<'_> {
+        let names = one.alternatives.iter().map(|other| &*other.effect);
+        let estimate = [one.estimate, one.sigma];
+        (
+            &one.effect,
+            estimate,
+            &one.unit,
+            one.p_value,
+            names.collect(),
+        )
+    });
+    let mut screen = verdict(&terms.collect::<Vec<_>>());
+    for one in &report.log_biases {
+        let differences = one.differences_deg_per_h.iter().zip(&one.sigmas_deg_per_h);
+        let differences: Vec<String> = differences
+            .map(|(difference, sigma)| format::with_sigma(*difference, *sigma))
+            .collect();
+        let words = format!(
+            "{}.bias by {} deg/h from the first log on, {}: another turn-on, or another unit, whose logs are \
+             evaluated alone",
+            one.gyro,
+            differences.join(", "),
+            format::p_value(one.test.p_value)
+        );
+        screen.fact("logs differ", words);
+    }
+    screen.fact("no gain", report.not_confirmed.join(", "));
+    if let Some(gain) = &report.cross_validation {
+        let list = |values: [f64; 3]| values.map(|value| format!("{value:.0}")).join(", ");
+        let words = format!(
+            "rms of gyros x, y, z on left-out stops {} → {} deg/h (noise {}); {:+.1} ± {:.1} nats",
+            list(gain.rms_before_deg_per_h),
+            list(gain.rms_after_deg_per_h),
+            list(gain.noise_deg_per_h),
+            gain.cross_validated_log_score_nats,
+            gain.standard_error_nats
+        );
+        screen.fact("what they do", words);
+    }
+    let extended = report.gyros.iter().map(|gyro| {
+        let law = &gyro.extended;
+        format!("{} {}", gyro.gyro, format::short(law.excess_deg_per_h, 2))
+    });
+    let extended = extended.collect::<Vec<_>>().join(", ");
+    screen.fact(
+        "left over",
+        format!("scatter beyond the noise of the stops, deg/h: {extended}"),
+    );
+    let controls = &report.controls;
+    let [found, of] = [controls.shuffles_with_findings, controls.shuffles];
+    screen.fact(
+        "controls",
+        format!("terms found in {found} of {of} data sets with permuted stops"),
+    );
+    screen
+}
+
+fn few_positions(report: &FewPositionReport) -> Screen {
+    let terms = report.findings.iter().map(|one| -> Term<'_> {
+        let names = one.alternatives.iter().map(|name| &**name);
+        let estimate = [one.estimate, one.sigma];
+        (
+            &one.effect,
+            estimate,
+            &one.unit,
+            one.p_value,
+            names.collect(),
+        )
+    });
+    let mut screen = verdict(&terms.collect::<Vec<_>>());
+    for gyro in &report.gyros {
+        let law = gyro.coefficients.iter().take(NAMES_SHOWN).map(|one| {
+            let size = format::with_sigma(one.estimate, one.sigma);
+            format!("{} {size} {}", one.name, one.unit)
+        });
+        screen.fact(&gyro.gyro, law.collect::<Vec<_>>().join(", "));
+        let open: Vec<&str> = gyro.undetermined.iter().map(|name| &**name).collect();
+        if !open.is_empty() {
+            screen.fact("not determined", few(&open, NAMES_SHOWN));
+        }
+    }
+    screen
+}
