@@ -47,7 +47,11 @@ pub fn of_calibration(
     }
     sections.extend(undetermined(report));
     if let Some(first) = records.first() {
-        sections.push(coefficients::site(first.fit)?);
+        let mut site = coefficients::site(first.fit)?;
+        if records.len() > 1 {
+            site.title = format!("{}: {}", first.name, site.title);
+        }
+        sections.push(site);
     }
     let runs: Vec<Item> = runs(report).into_iter().map(Item::from).collect();
     if !runs.is_empty() {

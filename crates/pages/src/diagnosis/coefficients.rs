@@ -157,19 +157,16 @@ fn add(panel: &mut Panel, (label, tint): (&str, Tint), fitted: &[Option<Fitted>]
 /// Sensitivity of the coefficients to the site.
 pub(crate) fn site(fit: &FittedPlatform<'_>) -> Result<Section, PageError> {
     let biases = fit.site_biases()?;
-    let mut columns = vec![Column {
-        head: "coefficient".to_owned(),
-        is_number: false,
-    }];
+    let mut columns = vec![Column::words("coefficient"), Column::numbers("σ")];
     for bias in &biases {
-        let number = |head: String| Column {
-            head,
-            is_number: true,
-        };
-        columns.extend([number(site_error(bias)), number("in σ".to_owned())]);
+        columns.extend([&*site_error(bias), "in σ"].map(Column::numbers));
     }
     let rows = DRIFT.iter().enumerate().map(|(index, element)| {
-        let mut row = vec![Cell::from(format!("{} [{}]", element.id, element.unit))];
+        let sigma = fit.covariance()[(index, index)].sqrt();
+        let mut row = vec![
+            Cell::from(format!("{} [{}]", element.id, element.unit)),
+            Cell::from(format!("{sigma:.1e}").replace('-', "−")),
+        ];
         for bias in &biases {
             let in_sigmas = bias.in_sigmas[index];
             row.push(Cell::from(
@@ -185,7 +182,7 @@ pub(crate) fn site(fit: &FittedPlatform<'_>) -> Result<Section, PageError> {
     Ok(titled(
         "site",
         "Site",
-        "Sensitivity to the site: bias of each coefficient by an error of it, in its unit and in standard deviations of the \
+        "Sensitivity to the site: bias of each coefficient by an error of it, in its unit and in standard deviations σ of the \
          estimate. Errors that the bench file declares count in those standard deviations already.",
         vec![Item::from(Table {
             title: "Biases by errors of the site".to_owned(),
