@@ -3,6 +3,7 @@
 //! A printed number stands for all numbers that are written so. What is computed of such spans has a span too; a
 //! number is right if both have a number in common, without any other tolerance.
 
+mod formulas;
 mod rules;
 #[cfg(test)]
 mod tests;

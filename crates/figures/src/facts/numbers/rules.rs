@@ -1,19 +1,16 @@
 //! What numbers of a page follow from.
 
-use gyrocal_statistics::{
-    Proportion, chi_square_band, chi_square_quantile, chi_square_tail, chi_square_two_sided_p,
-    p_of_least, rms_ratio_interval, student_quantile,
-};
+use std::collections::BTreeSet;
 
-use super::{Checks, Part, Span, name_of, over};
+use gyrocal_statistics::{chi_square_quantile, chi_square_tail, p_of_least};
+
+use super::formulas::{findings, largest_changes, monte_carlo, nis, plan, uncertainty};
+use super::{Checks, Line, Part, name_of, over};
 use crate::facts::values::leading;
 
 /// Quantities that a page shows at several places: below each the patterns of [`Part::found`], with a tab for `|` and
 /// a factor where the unit is another.
 pub(super) const SAME: &str = include_str!("same.txt");
-
-/// False alarm of the bands of a mean NIS and a mean NEES.
-const FALSE_ALARM: f64 = 1e-3;
 
 /// Micro-g of a g.
 const MICRO: f64 = 1e6;
@@ -21,7 +18,7 @@ const MICRO: f64 = 1e6;
 type Rule = (&'static str, fn(&Part, &mut Checks));
 
 /// All rules but those of [`SAME`].
-pub(super) const RULES: [Rule; 19] = [
+pub(super) const RULES: [Rule; 20] = [
     (
         "change of an estimate, and over the nominal sigma",
         |part, to| {
@@ -71,11 +68,14 @@ pub(super) const RULES: [Rule; 19] = [
             }
         }
     }),
+    ("sigmas and p of a finding", findings),
     ("size over its sigma", |part, to| {
         for (table, row) in part.rows("parameter") {
-            // Of effects with one parameter: others go on in rows without a name.
+            // Of effects with one parameter: others go on in rows without a name. That of noise is of a test of its
+            // own, and that of a random walk, which has no sigma, of its likelihood.
             let of = table.rows.iter().skip_while(|own| *own != row).nth(1);
-            if of.is_none_or(|next| !next[0].is_empty()) {
+            let is_own = row.iter().any(|cell| cell.contains('±')) && !row[0].ends_with("noise");
+            if is_own && of.is_none_or(|next| !next[0].is_empty()) {
                 let size = ["estimate", "estimate#1"].map(|head| table.number(row, head));
                 to.is(
                     &row[0],
@@ -99,11 +99,9 @@ pub(super) const RULES: [Rule; 19] = [
         let axes: Vec<_> = axes.concat().into_iter().map(Some).take(3).collect();
         let rms = |x: &[f64]| MICRO * (x.iter().map(|one| one * one).sum::<f64>() / 3.0).sqrt();
         if axes.len() == 3 {
-            to.is(
-                "what it does",
-                part.first("open-loop error # → # µg"),
-                over(&axes, rms),
-            );
+            let patterns = ["open-loop error # → # µg", "# µg rms; accelerometer noise"];
+            let shown = patterns.iter().find_map(|pattern| part.first(pattern));
+            to.is("open-loop error", shown, over(&axes, rms));
         }
     }),
     ("open-loop error of an output", |part, to| {
@@ -137,23 +135,33 @@ pub(super) const RULES: [Rule; 19] = [
             .lines
             .iter()
             .filter(|line| line.text.starts_with("with all causes\t"));
-        let p: Vec<_> = rows
-            .map(|line| Some(leading(line.cells.last()?)?.0))
-            .collect();
-        let least = |x: &[f64]| p_of_least(x.iter().copied().fold(1.0, f64::min), x.len() as f64);
-        if let Some((whole, each)) = p.split_last() {
-            to.is("all residual tests together", *whole, over(each, least));
-        }
+        let p = |line: &Line| Some(leading(line.cells.last()?)?.0);
+        let (terms, mut tests): (Vec<_>, Vec<_>) =
+            rows.partition(|line| line.cells[1].starts_with("outside of"));
+        let Some(whole) = tests.pop() else { return };
+        let tests: Vec<_> = tests.into_iter().map(p).collect();
+        let of_tests = over(&tests, |x| {
+            p_of_least(x.iter().copied().fold(1.0, f64::min), x.len() as f64)
+        });
+        let least: Vec<_> = terms.into_iter().map(p).chain([of_tests]).collect();
+        let computed = over(&least, |x| x.iter().copied().fold(1.0, f64::min));
+        to.is("all residual tests together", p(whole), computed);
     }),
     (
         "effects ranked and left out, not tested, missing",
         |part, to| {
+            // Others were tested, and would not show.
+            let untested = part
+                .rows("typical size")
+                .filter(|(_, row)| row[2].is_empty());
+            let untested = untested.count() as f64;
             let rows = |head: &str| part.rows(head).count() as f64;
-            let bars = part
-                .rows("score statistic*")
-                .filter_map(|(table, row)| table.number(row, "value"));
-            let all =
-                bars.count() as f64 + part.count("# more effects are not shown").unwrap_or(0.0);
+            let bars = part.rows("score statistic*");
+            let bars = bars.filter(|(table, row)| table.number(row, "value").is_some());
+            // One may be an alternative of several.
+            let bars: BTreeSet<&str> = bars.map(|(_, row)| name_of(row)).collect();
+            let more = part.count("# more effects are not shown");
+            let all = bars.len() as f64 + more.unwrap_or(0.0);
             to.is(
                 "Ranking",
                 part.first("among # effects tested"),
@@ -167,7 +175,7 @@ pub(super) const RULES: [Rule; 19] = [
             to.is(
                 "not tested",
                 part.first("# effects (missing inputs"),
-                Some([rows("typical size"); 2]),
+                Some([untested; 2]),
             );
             to.is(
                 "missing",
@@ -237,133 +245,3 @@ pub(super) const RULES: [Rule; 19] = [
         }
     }),
 ];
-
-/// `change by gyro_z.g_zz +2.8, gyro_z.bias -2.6 sigma; the others less`.
-fn largest_changes(part: &Part, to: &mut Checks) {
-    let lines = part.lines.iter();
-    for line in lines.filter_map(|line| line.text.strip_prefix("change by ")) {
-        for (name, number) in line.split(", ").filter_map(|text| text.split_once(' ')) {
-            let computed = part.elsewhere(name, "in sigmas").map(|found| found.1);
-            to.is(name, leading(number).map(|found| found.0), computed);
-        }
-    }
-}
-
-fn nis(part: &Part, to: &mut Checks) {
-    let Some(rows) = part.count("# rows over # days") else {
-        return;
-    };
-    let p = |x: &[f64]| chi_square_two_sided_p(x[0] * rows, 3.0 * rows).unwrap_or(f64::NAN);
-    let [low, high] = chi_square_band(3.0 * rows, FALSE_ALARM).map(|bound| Some([bound / rows; 2]));
-    for found in part.found("mean normalised innovation squared\t# (band # to #)\t#") {
-        to.is(
-            "p of the mean NIS",
-            Some(found[3]),
-            over(&[Some(found[0])], p),
-        );
-        to.is("band of the mean NIS", Some(found[1]), low);
-        to.is("band of the mean NIS", Some(found[2]), high);
-    }
-}
-
-/// Geometric means of ratios of sigmas, and the same ratios in the bars and in words.
-fn plan(part: &Part, to: &mut Checks) {
-    let mean = |head: &str| {
-        let ratios = part.rows("with the best run").map(|(table, row)| {
-            let pair = [head, "record so far"].map(|head| table.number(row, head));
-            over(&pair, |x| (x[0] / x[1]).ln())
-        });
-        let ratios: Vec<Span> = ratios.collect::<Option<_>>()?;
-        let sum = |end: usize| ratios.iter().map(|one| one[end]).sum::<f64>();
-        Some([0, 1].map(|end| (sum(end) / ratios.len() as f64).exp()))
-    };
-    to.is(
-        "best run",
-        part.first("sigmas fall to # of the present"),
-        mean("with the best run"),
-    );
-    to.is(
-        "going on",
-        part.first("in the present attitude: sigmas #"),
-        mean("continued"),
-    );
-    let words = part.found(" h\t#°\t#°\t#°\t#");
-    for (bar, row) in part.found("°, # h\t#").iter().zip(words) {
-        to.is(
-            "bar of a proposal",
-            Some(bar[1]),
-            Some(row[3].map(|ratio| 100.0 * ratio)),
-        );
-    }
-}
-
-fn uncertainty(part: &Part, to: &mut Checks) {
-    to.columns(
-        part,
-        "expanded, 95 %",
-        &["coverage factor", "standard uncertainty"],
-        |x| x[0] * x[1],
-    );
-    to.columns(
-        part,
-        "coverage factor",
-        &["effective degrees of freedom"],
-        |x| student_quantile(0.975, x[0]).unwrap_or(f64::NAN),
-    );
-    for (table, row) in part.rows("standard uncertainty") {
-        let sources = part
-            .rows("distribution")
-            .map(|(table, source)| table.number(source, &row[1]));
-        let root = |x: &[f64]| x.iter().map(|one| one * one).sum::<f64>().sqrt();
-        to.is(
-            &row[1],
-            table.number(row, "standard uncertainty"),
-            over(&sources.collect::<Vec<_>>(), root),
-        );
-    }
-}
-
-fn monte_carlo(part: &Part, to: &mut Checks) {
-    for (table, row) in part.rows("runs that determine it") {
-        let number = |head: &str| table.number(row, head);
-        let middle = |head: &str| number(head).map_or(f64::NAN, |[low, high]| (low + high) / 2.0);
-        let runs = middle("runs that determine it").round();
-        for end in [0, 1] {
-            let of = |x: &[f64]| rms_ratio_interval(x[0], runs as usize, 0.95)[end];
-            to.is(
-                &row[0],
-                number(&format!("RMSE / sigma#{}", end + 1)),
-                over(&[number("RMSE / sigma")], of),
-            );
-        }
-        let hits = (runs * middle("in the 95 % interval")).round();
-        let share = Proportion {
-            hits: hits as u64,
-            trials: runs as u64,
-        };
-        let [low, high] = share.interval(0.95);
-        for (place, value) in [share.share(), low, high].into_iter().enumerate() {
-            to.is(
-                &row[0],
-                number(&format!("in the 95 % interval#{place}")),
-                Some([value; 2]),
-            );
-        }
-    }
-    to.columns(
-        part,
-        "standard error",
-        &["RMSE", "bias", "runs that determine it"],
-        |x| ((x[0].powi(2) - x[1].powi(2)) / (x[2].round() - 1.0)).sqrt(),
-    );
-    for head in ["RMSE / sigma", "RMSE / sigma#1", "RMSE / sigma#2", "bias"] {
-        to.again(part, head);
-    }
-    let nees = part.found("mean #, expected # (# to #, 99.9 %)");
-    if let (Some(nees), Some(runs)) = (nees.first(), part.count("# runs, # failed")) {
-        let expected = (nees[1][0] + nees[1][1]) / 2.0;
-        let band = chi_square_band(expected * runs, FALSE_ALARM).map(|bound| [bound / runs; 2]);
-        to.is("NEES", Some(nees[2]), Some(band[0]));
-        to.is("NEES", Some(nees[3]), Some(band[1]));
-    }
-}
