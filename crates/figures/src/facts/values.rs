@@ -6,6 +6,9 @@ const UNITS: &str = "% deg g µg mg ng rad arcsec arcmin s min h d day days Hz K
 /// Endings of the names of files, which are no ids.
 const FILES: [&str; 7] = ["csv", "gz", "html", "json", "png", "py", "toml"];
 
+/// Of half a unit of the last digit, for the rounding of two conversions.
+const ROUNDING: f64 = 1e-9;
+
 /// A number as it is printed.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Number {
@@ -40,7 +43,8 @@ impl Number {
     pub(super) fn span(&self) -> [f64; 2] {
         let half = match self.digits.as_str() {
             "0" => 0.0,
-            _ => half(self.last.unwrap_or(0)),
+            // Without its ends, so that two numbers of the same digits are equal or differ.
+            _ => 0.5 * 10f64.powi(self.last.unwrap_or(0)) * (1.0 - ROUNDING),
         };
         [self.value - half, self.value + half]
     }
@@ -57,8 +61,6 @@ impl Number {
 
 /// Half a unit of a digit.
 fn half(digit: i32) -> f64 {
-    // Of half a unit of the last digit, for the rounding of the two conversions.
-    const ROUNDING: f64 = 1e-9;
     0.5 * 10f64.powi(digit) * (1.0 + ROUNDING)
 }
 

@@ -33,7 +33,7 @@ fn broken(from: &str, to: &str) -> Vec<&'static str> {
 #[test]
 fn numbers_are_recomputed_and_a_digit_that_is_changed_is_found() {
     assert_eq!(broken("", ""), [""; 0]);
-    assert_eq!(checked(PAGE).len(), 10);
+    assert_eq!(checked(PAGE).len(), 9);
     let changes = "change of an estimate, and over the nominal sigma";
     for (from, to, rule) in [
         ("<td>−1.7</td></tr>", "<td>−3.0</td></tr>", changes),
@@ -42,7 +42,7 @@ fn numbers_are_recomputed_and_a_digit_that_is_changed_is_found() {
         ("+69.4 nats on", "+69.5 nats on", "gain on left-out blocks"),
         (
             "3.124",
-            "3.125",
+            "3.126",
             "p and band of the mean innovation squared",
         ),
         (
@@ -51,8 +51,8 @@ fn numbers_are_recomputed_and_a_digit_that_is_changed_is_found() {
             "p and band of the mean innovation squared",
         ),
         ("4321", "4221", "p and band of the mean innovation squared"),
-        ("0.87", "0.86", "p of a correlation over rows"),
-        ("0.60", "0.61", "p of all residual tests"),
+        ("0.87", "0.85", "p of a correlation over rows"),
+        ("0.60", "0.62", "p of all residual tests"),
         ("17.6</td>", "17.7</td>", "size over its sigma"),
     ] {
         assert_eq!(broken(from, to), [rule], "{from}");
