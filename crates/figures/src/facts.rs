@@ -5,6 +5,7 @@
 //! (`shown.txt.gz`) and what may go (`moves.toml`). How a sentence is worded is no fact.
 
 mod lines;
+pub(crate) mod numbers;
 #[cfg(test)]
 mod tests;
 mod values;
@@ -179,16 +180,21 @@ fn answers(folder: &Path, small: bool) -> Result<Vec<Answer>, Error> {
 }
 
 impl Answer {
-    /// Makes the record and runs the command.
-    fn shown(&self) -> Result<Shown, Error> {
+    /// Makes the record and runs the command: exit code, what it says, and its page, which may be empty.
+    fn told(&self) -> Result<(i32, [String; 2], String), Error> {
         let folder = tempfile::tempdir()?;
         let folder = folder.path();
         for line in &self.make {
             make(line, folder)?;
         }
-        let (code, [out, error]) = told(&format!("{} --verbose", self.run), folder)?;
+        let (code, told) = told(&format!("{} --verbose", self.run), folder)?;
         let page = std::fs::read_to_string(folder.join("page.html")).unwrap_or_default();
         let page = placeless(&page.replace("&#x2f;", "/"), folder);
+        Ok((code, told, page))
+    }
+
+    fn shown(&self) -> Result<Shown, Error> {
+        let (code, [out, error], page) = self.told()?;
         let [screen, mut details] = of_terminal(&out);
         details.extend(of_terminal(&error).concat());
         details.push(Line::new(&format!("exit code: {code}"), ""));

@@ -104,10 +104,11 @@ pub fn of_budget(budget: &RecordUncertainty) -> Section {
 #[must_use]
 pub fn of_spread(spread: &RunSpread) -> Section {
     let rows = spread.coefficients.iter().map(|one| {
+        let [mean, _] = format::estimate(one.mean, one.standard_deviation);
         [
             one.term.clone(),
             one.name.clone(),
-            format!("{:.3e}", one.mean),
+            mean,
             format!("{:.2e}", one.standard_deviation),
             format!("{:.2e}", one.expected),
             format!("{:.2}", one.p_value),
@@ -134,10 +135,11 @@ fn result_row(one: &CoefficientUncertainty) -> [String; 8] {
         Some(few) if few < 1e6 => format!("{few:.0}"),
         _ => "∞".to_owned(),
     };
+    let [estimate, _] = format::estimate(one.estimate, one.combined);
     [
         one.term.clone(),
         one.name.clone(),
-        format!("{:.3e}", one.estimate),
+        estimate,
         format!("{:.2e}", one.combined),
         degrees,
         format::short(one.coverage_factor, 3),

@@ -13,6 +13,10 @@ pub(super) struct Line {
     pub(super) verdict: String,
     /// The command in it, which its text does not have.
     pub(super) command: String,
+    /// Cells of a row of a page, the empty ones too.
+    pub(super) cells: Vec<String>,
+    /// Whether the cells are the heads of columns.
+    pub(super) is_head: bool,
 }
 
 impl Line {
@@ -29,8 +33,25 @@ impl Line {
             },
             verdict: plain(verdict),
             command,
+            ..Self::default()
         }
     }
+
+    fn of_cells(cells: &[String], is_head: bool) -> Self {
+        let full = cells.iter().filter(|cell| !cell.is_empty());
+        let full: Vec<&str> = full.map(String::as_str).collect();
+        Self {
+            cells: cells.iter().map(|cell| spaced(&plain(cell))).collect(),
+            is_head,
+            // The heads of columns are no row.
+            ..Self::new(&full.join(if is_head { " " } else { "\t" }), "")
+        }
+    }
+}
+
+/// A text with single spaces.
+fn spaced(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 /// Lines of the first screen, and of what stands below it.
@@ -117,15 +138,13 @@ pub(super) fn of_page(html: &str) -> Vec<Line> {
             continue;
         }
         let own = core::mem::take(&mut text);
-        let own = unescaped(own.split_whitespace().collect::<Vec<_>>().join(" "));
+        let own = unescaped(spaced(&own));
         if is_row {
-            cells.extend(Some(own).filter(|own| !own.is_empty()));
             if name == "/tr" {
                 is_row = false;
-                // The heads of columns are no row.
-                let gap = if is_head { " " } else { "\t" };
-                lines.push(Line::new(&cells.join(gap), ""));
-                cells.clear();
+                lines.push(Line::of_cells(&core::mem::take(&mut cells), is_head));
+            } else {
+                cells.push(own);
             }
         } else if !own.is_empty() {
             let verdict = own.split(':').next().filter(|_| name == "/h1");

@@ -6,6 +6,9 @@ const UNITS: &str = "% deg g µg mg ng rad arcsec arcmin s min h d day days Hz K
 /// Endings of the names of files, which are no ids.
 const FILES: [&str; 7] = ["csv", "gz", "html", "json", "png", "py", "toml"];
 
+/// Of half a unit of the last digit, for the rounding of two conversions.
+const ROUNDING: f64 = 1e-9;
+
 /// A number as it is printed.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Number {
@@ -36,17 +39,29 @@ impl Number {
         })
     }
 
+    /// The least and the largest number that is written so. `0` is nothing at all.
+    pub(super) fn span(&self) -> [f64; 2] {
+        let half = match self.digits.as_str() {
+            "0" => 0.0,
+            // Without its ends, so that two numbers of the same digits are equal or differ.
+            _ => 0.5 * 10f64.powi(self.last.unwrap_or(0)) * (1.0 - ROUNDING),
+        };
+        [self.value - half, self.value + half]
+    }
+
     /// Whether another one says at least what this one says: rounded to the digits of this one it is this one.
     pub(super) fn is_told_by(&self, other: &Self) -> bool {
-        // Of half a unit of the last digit, for the rounding of the two conversions.
-        const ROUNDING: f64 = 1e-9;
         let as_fine = |last: i32| other.last.is_some_and(|other| other <= last);
         self.value == other.value
-            || self.last.is_some_and(|last| {
-                let half = 0.5 * 10f64.powi(last) * (1.0 + ROUNDING);
-                as_fine(last) && (self.value - other.value).abs() <= half
-            })
+            || self
+                .last
+                .is_some_and(|last| as_fine(last) && (self.value - other.value).abs() <= half(last))
     }
+}
+
+/// Half a unit of a digit.
+fn half(digit: i32) -> f64 {
+    0.5 * 10f64.powi(digit) * (1.0 + ROUNDING)
 }
 
 /// A text with one way to write a number: `3.1·10⁻⁶`, `(1.3 ± 0.1)e-3` and `−2σ` become `3.1e-6`, `1.3e-3 ± 0.1e-3`
@@ -124,6 +139,20 @@ fn length_of_number(text: &str) -> usize {
         }
     }
     length
+}
+
+/// The number that a text begins with, and what follows; `<` and `>` make it a bound.
+pub(super) fn leading(text: &str) -> Option<([f64; 2], &str)> {
+    let bound = text.strip_prefix(['<', '>']);
+    let number = bound.map_or(text, str::trim_start);
+    let length = length_of_number(number);
+    let [low, high] = Number::new(&number[..length], "")?.span();
+    let span = match text.chars().next() {
+        Some('<') => [f64::NEG_INFINITY, high],
+        Some('>') => [low, f64::INFINITY],
+        _ => [low, high],
+    };
+    Some((span, &number[length..]))
 }
 
 fn unit_of(text: &str) -> &str {

@@ -51,6 +51,23 @@ pub(super) const DOORS: Topic = Topic {
             ),
             facts::figures,
         ),
+        part(
+            "numbers",
+            "Numbers of pages that follow from others on them, recomputed from the HTML alone.",
+            of(
+                COMMAND,
+                &[
+                    "crates/figures/src/before",
+                    "crates/figures/src/facts",
+                    "crates/figures/src/facts.rs",
+                    "crates/evaluation",
+                    "crates/truth",
+                    "tests/data/before",
+                    "tests/data/facts",
+                ],
+            ),
+            facts::numbers::figures,
+        ),
         Part {
             small: false,
             ..part(

@@ -152,12 +152,16 @@ fn add(panel: &mut Panel, (label, tint): (&str, Tint), fitted: &[Option<Fitted>]
 /// Sensitivity of the coefficients to the site.
 pub(crate) fn site(fit: &FittedPlatform<'_>) -> Result<Section, PageError> {
     let biases = fit.site_biases()?;
-    let mut columns = vec![Column::words("coefficient")];
+    let mut columns = vec![Column::words("coefficient"), Column::numbers("σ")];
     for bias in &biases {
-        columns.extend([site_error(bias).as_str(), "in σ"].map(Column::numbers));
+        columns.extend([&*site_error(bias), "in σ"].map(Column::numbers));
     }
     let rows = DRIFT.iter().enumerate().map(|(index, element)| {
-        let mut row = vec![Cell::from(format!("{} [{}]", element.id, element.unit))];
+        let sigma = fit.covariance()[(index, index)].sqrt();
+        let mut row = vec![
+            Cell::from(format!("{} [{}]", element.id, element.unit)),
+            Cell::from(format!("{sigma:.1e}").replace('-', "−")),
+        ];
         for bias in &biases {
             let in_sigmas = bias.in_sigmas[index];
             row.push(Cell::from(
@@ -173,7 +177,7 @@ pub(crate) fn site(fit: &FittedPlatform<'_>) -> Result<Section, PageError> {
     Ok(titled(
         "site",
         "Site",
-        "Sensitivity to the site: bias of each coefficient by an error of it, in its unit and in standard deviations of the \
+        "Sensitivity to the site: bias of each coefficient by an error of it, in its unit and in standard deviations σ of the \
          estimate. Errors that the bench file declares count in those standard deviations already.",
         vec![Item::from(Table {
             title: "Biases by errors of the site".to_owned(),

@@ -247,6 +247,11 @@ fn of_remainder(remainder: &ResidualTest) -> Vec<Test> {
         let found = ljung_box(all.ljung_box, all.degrees_of_freedom);
         add(LJUNG_BOX, found, all.p_value);
     }
+    for term in &remainder.unmodelled {
+        let name = format!("outside of the catalogue, {}", term.channel);
+        let size = format!("{} {}", format::significant(term.size, 3), term.unit);
+        add(&name, size, term.p_value);
+    }
     if let Some(p) = remainder.p_value {
         add("all residual tests together", String::new(), p);
     }

@@ -148,7 +148,10 @@ fn drawn_row(estimates: &Estimates, row: &EstimateRow) -> DrawnRow {
             .map(|(one, (label, tint))| {
                 let [from, to] = ends(one.value, one.sigma).map(place);
                 DrawnValue {
-                    text: with_uncertainty(one.value, one.sigma),
+                    text: match one.value.is_nan() {
+                        true => "none".to_owned(),
+                        false => with_uncertainty(one.value, one.sigma),
+                    },
                     tint: tint.name(),
                     label: label.clone(),
                     low: format!("{from:.2}"),
