@@ -240,6 +240,8 @@ class Calibration(Result):
     effects: list[Fields]
     setup: list[Fields]
     runs: list[Fields]
+    records: list[Fields]
+    usable: bool
 
     @property
     def names(self) -> list[str]:
