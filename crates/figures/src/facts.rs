@@ -28,7 +28,7 @@ use lines::{Line, of_page, of_terminal};
 use values::{is_id, numbers, words};
 
 /// Missing facts that are printed.
-const PRINTED: usize = 20;
+const PRINTED: usize = 1000;
 
 /// Words beside a label or an id that are facts.
 const VERDICTS: [&str; 7] = [

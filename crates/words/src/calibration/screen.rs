@@ -31,7 +31,8 @@ pub fn calibration_screen(report: &CalibrationReport) -> Screen {
     }
     let shown = report.effects.iter().filter(|one| !one.causes.is_empty());
     for test in shown.take(RECORDS_SHOWN) {
-        causes(test, &mut screen);
+        // Whoever gives an effect has chosen among them.
+        causes(test, report.with_effects.is_none(), &mut screen);
     }
     screen.fact("how sure", how_sure(report));
     if let Some(with) = &report.with_effects {
@@ -143,8 +144,8 @@ fn verdict(report: &CalibrationReport) -> Screen {
     Screen::new(standing, verdict, what)
 }
 
-/// What the diagnosis of a record names.
-fn causes(test: &EffectTest, screen: &mut Screen) {
+/// What the diagnosis of a record names, and on request what else that may be.
+fn causes(test: &EffectTest, alternatives: bool, screen: &mut Screen) {
     let each = test.causes.iter().take(NAMES_SHOWN);
     let each = each.map(|one: &NamedCause| {
         let p = tested(one.p_value);
@@ -154,7 +155,9 @@ fn causes(test: &EffectTest, screen: &mut Screen) {
     screen.fact("how large", each.join("; "));
     let others = test.causes.iter().flat_map(|one| &one.alternatives);
     let others: Vec<&str> = others.map(String::as_str).collect();
-    screen.fact("may also be", few(&others, NAMES_SHOWN));
+    if alternatives {
+        screen.fact("may also be", few(&others, NAMES_SHOWN));
+    }
 }
 
 fn how_sure(report: &CalibrationReport) -> String {

@@ -133,7 +133,7 @@ fn site(report: &CalibrationReport) -> Option<Table> {
     });
     let of = match has_several(report) {
         true => "errors of the first record's site",
-        false => "site errors",
+        false => "errors of the site",
     };
     let title = format!(
         "Sensitivity to {of}, which the residuals do not show: bias of each coefficient in its unit"

@@ -34,7 +34,7 @@ fn a_fault_that_the_diagnosis_finds_is_told_with_its_probability() {
     let [test] = &found.effects[..] else {
         panic!("{:?}", found.effects)
     };
-    let ([told], [named]) = (&test.causes[..], &diagnosis.findings[..]) else {
+    let ([told], [named, ..]) = (&test.causes[..], &diagnosis.findings[..]) else {
         panic!("{test:?}")
     };
     assert_eq!(told.effect, named.effect);
