@@ -14,6 +14,7 @@ const QUANTITIES: [&str; 3] = ["latitude", "earth_rate", "gravity"];
 pub(super) fn further(report: &CalibrationReport) -> Vec<Table> {
     let tables = [
         given_effects(report),
+        attitudes(report),
         turn_ons(report),
         first_record(report),
         site(report),
@@ -68,6 +69,25 @@ fn given_effects(report: &CalibrationReport) -> Option<Table> {
         Column::words("unit"),
     ];
     Some(Table::new(&title, columns, effects))
+}
+
+/// Attitude of each record at its first and last row; `None` for the streaming filter.
+fn attitudes(report: &CalibrationReport) -> Option<Table> {
+    let angles = |deg: [f64; 3]| deg.map(|angle| format!("{angle:.4}")).join(", ");
+    let rows = report.runs.iter().map(|run| {
+        [
+            printable_line(&run.record).into_owned(),
+            angles(run.initial_angles_deg),
+            angles(run.final_angles_deg),
+        ]
+    });
+    let columns = vec![
+        Column::words("record"),
+        Column::numbers("first row, deg"),
+        Column::numbers("last row, deg"),
+    ];
+    let title = "Platform angles about x, y, z against east, north, up";
+    (!report.runs.is_empty()).then(|| Table::new(title, columns, rows))
 }
 
 /// Offsets of the turn-ons from the mean constant drifts; `None` if turn-ons are declared alike.
