@@ -32,6 +32,11 @@ pub(super) fn meaning(name: &str) -> &'static str {
     all.find(|one| one.id == name).map_or("", |one| one.doc)
 }
 
+/// Whether a coefficient is a D_F.
+fn is_constant_drift(name: &str) -> bool {
+    meaning(name).starts_with("D_F of")
+}
+
 /// Whether a coefficient is a D_I.
 pub(super) fn is_mass_unbalance(name: &str) -> bool {
     meaning(name).starts_with("D_I of")
@@ -111,7 +116,7 @@ fn first_record(report: &CalibrationReport) -> Option<Table> {
     let alone = report.first_record_sigmas.as_ref()?;
     let differ = report.runs.iter().any(|run| run.turn_on.is_some());
     let pairs = report.coefficients.iter().zip(alone);
-    let rows = pairs.filter(|(one, _)| !(differ && one.name.ends_with(".bias")));
+    let rows = pairs.filter(|(one, _)| !(differ && is_constant_drift(&one.name)));
     let rows = rows.map(|(one, alone)| {
         [
             one.name.clone(),

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use gyrocal::EFFECTS;
 use gyrocal_statistics::{chi_square_quantile, chi_square_tail, p_of_least};
 
 use super::formulas::{findings, largest_changes, monte_carlo, nis, plan, uncertainty};
@@ -74,7 +75,7 @@ pub(super) const RULES: [Rule; 20] = [
             // Of effects with one parameter: others go on in rows without a name. That of noise is of a test of its
             // own, and that of a random walk, which has no sigma, of its likelihood.
             let of = table.rows.iter().skip_while(|own| *own != row).nth(1);
-            let is_own = row.iter().any(|cell| cell.contains('±')) && !row[0].ends_with("noise");
+            let is_own = row.iter().any(|cell| cell.contains('±')) && !is_noise(&row[0]);
             if is_own && of.is_none_or(|next| !next[0].is_empty()) {
                 let size = ["estimate", "estimate#1"].map(|head| table.number(row, head));
                 to.is(
@@ -245,3 +246,7 @@ pub(super) const RULES: [Rule; 20] = [
         }
     }),
 ];
+
+fn is_noise(name: &str) -> bool {
+    EFFECTS.iter().any(|one| one.id == name && one.is_noise())
+}
