@@ -33,9 +33,10 @@ use inputs::Measurement;
 
 /// Estimate the nine drift coefficients from one record or several.
 ///
-/// Prints each coefficient with its standard deviation, the consistency test of the innovations,
-/// unobservable combinations of coefficients, the estimated noise, and the sensitivity to errors of
-/// latitude, Earth rate and gravity.
+/// Prints each coefficient with its standard deviation, the consistency test of the innovations, what the
+/// diagnosis of each record names (of more than 10 000 rows, that of their means), unobservable
+/// combinations of coefficients, the estimated noise, and the sensitivity to errors of latitude,
+/// Earth rate and gravity.
 ///
 /// Several records are several turn-ons of one platform, each with its own initial attitude and
 /// clock.
@@ -218,11 +219,15 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Reply, Failure> {
     progress.stage("diagnosis", FITTED);
     tracing::info!(fit = ?fitted.fit, iterations = fitted.iterations, "calibrated");
     let effects = effects(&measurements, &gyro_axes);
+    let given = measurements
+        .iter()
+        .map(|one| one.path.to_string_lossy().into_owned());
+    let given: Vec<String> = given.collect();
     drop(progress);
     let found = CalibrationRun {
         method: arguments.method(),
         first_run_sigmas: first_run_sigmas(&runs, &gyro_axes, &options),
-        verdict: calibration_verdict(&fitted.fit, &names, &effects),
+        verdict: calibration_verdict(&fitted.fit, &given, &effects),
         effects,
         with_effects,
         calibration: fitted,

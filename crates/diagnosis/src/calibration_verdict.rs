@@ -22,6 +22,24 @@ pub fn calibration_verdict(
     records: &[String],
     effects: &[EffectTest],
 ) -> CalibrationVerdict {
+    let CalibrationVerdict { verdict, text } = of_diagnosed(fit, records, effects);
+    let without = records
+        .iter()
+        .filter(|name| !effects.iter().any(|one| one.record == **name));
+    let without = without.map(|name| {
+        let name = printable_line(name);
+        format!(" {name} could not be diagnosed: it may show effects that the model lacks.")
+    });
+    let text = core::iter::once(text).chain(without).collect();
+    CalibrationVerdict { verdict, text }
+}
+
+/// The same, without what could not be diagnosed.
+fn of_diagnosed(
+    fit: &FitStatistics,
+    records: &[String],
+    effects: &[EffectTest],
+) -> CalibrationVerdict {
     let of_size = match fit.consistency() {
         Consistency::Consistent => FitVerdict::Consistent,
         Consistency::Overconfident => FitVerdict::TooLarge,

@@ -264,10 +264,10 @@ fn site(report: &CalibrationReport) -> String {
 
 fn exact_latitude(report: &CalibrationReport, latitude: &SiteReport) -> String {
     let biases = tables::biases(report, latitude);
-    let of_g = report.coefficients.iter().zip(&biases);
-    let of_g = of_g.filter(|(one, _)| tables::is_mass_unbalance(&one.name));
-    let of_g: Vec<f64> = of_g.map(|(_, [bias, _])| *bias).collect();
-    let mean = of_g.iter().sum::<f64>() / of_g.len() as f64;
+    let of_g = tables::MASS_UNBALANCES
+        .iter()
+        .filter_map(|place| biases.get(*place));
+    let mean = of_g.map(|[bias, _]| bias).sum::<f64>() / 3.0;
     let told = tables::largest_bias(report, latitude).map_or_else(
         String::new,
         |(one, [bias, in_sigmas])| {

@@ -54,22 +54,6 @@ pub fn input_files(inputs: &[Input]) -> Option<String> {
     has_record.then(|| command_files(known))
 }
 
-/// The same of the first record alone.
-#[must_use]
-pub fn first_input_files(inputs: &[Input]) -> Option<String> {
-    let mut seen: Vec<InputRole> = Vec::new();
-    let first: Vec<Input> = inputs
-        .iter()
-        .filter(|input| {
-            let role = input.role.filter(|role| !seen.contains(role));
-            seen.extend(role);
-            role.is_some()
-        })
-        .cloned()
-        .collect();
-    input_files(&first)
-}
-
 /// The first few of several names, and how many more there are.
 #[must_use]
 pub fn few(names: &[&str], shown: usize) -> String {

@@ -22,5 +22,5 @@ pub use diagnosis::{
     ranking, residual_description, residuals, setup, shifts, tested, time_is_temperature, told,
     typical_size, why_not_distinguished, would_distinguish,
 };
-pub use files::{command_files, few, first_input_files, input_files, record_and_bench};
+pub use files::{command_files, few, input_files, record_and_bench};
 pub use format::{NO_P, counted, tested as tested_p};

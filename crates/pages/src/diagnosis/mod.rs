@@ -87,10 +87,10 @@ fn ranked(result: &Answer) -> Option<Section> {
     Some(section)
 }
 
-/// The whole answer as the command prints it, without the tables that the other sections have.
+/// The whole answer in sentences, without the tables that the other sections have.
 fn in_words(result: &Answer) -> Section {
     let told = gyrocal_words::told(result).into_iter();
-    let lead = "The answer as the command prints it.";
+    let lead = "The answer in sentences; tables of its numbers are in the sections above.";
     section("words", "In words", lead, told.map(Item::Words).collect())
 }
 

@@ -46,7 +46,7 @@ pub(super) fn first(answer: &TumbleAnswer<'_>) -> Screen {
     screen
 }
 
-/// A term with its estimate, unit, p-value, and the names of what it may also be.
+/// A term with its estimate and sigma, unit, p-value, and the names of what it may also be.
 type Term<'a> = (&'a str, [f64; 2], &'a str, f64, Vec<&'a str>);
 
 fn verdict(terms: &[Term<'_>]) -> Screen {

@@ -11,7 +11,7 @@ use gyrocal_statistics::format;
 
 use super::{has_several, is_correlated, latitude, record_line, tables};
 use crate::diagnosis::parameter_values;
-use crate::files::{few, first_input_files, record_and_bench};
+use crate::files::{few, input_files, record_and_bench};
 use crate::format::tested;
 
 /// Records that are told one by one.
@@ -78,7 +78,7 @@ fn next(report: &CalibrationReport, screen: &mut Screen) {
         FitVerdict::Consistent => "all tests, and what could go undetected",
         _ => "looks for the causes",
     };
-    let files = first_input_files(inputs).unwrap_or_else(|| record_and_bench(inputs));
+    let files = input_files(inputs).unwrap_or_else(|| record_and_bench(inputs));
     screen.then(format!("gyrocal diagnose {files}"), why);
 }
 
@@ -107,7 +107,8 @@ fn verdict(report: &CalibrationReport) -> Screen {
         FitVerdict::NotSettled => (
             Standing::Bad,
             "NOT SETTLED",
-            format!("{of} more than its diagnosis can name: the coefficients may be biased"),
+            "the diagnosis could not tell what the model lacks: the coefficients may be biased"
+                .to_owned(),
         ),
         FitVerdict::TooLarge => (
             Standing::Doubtful,
@@ -134,6 +135,11 @@ fn verdict(report: &CalibrationReport) -> Screen {
                 "the noise differs from the declared ({}): the sigmas are not those of this noise",
                 noise_found(report).join(", ")
             ),
+        ),
+        _ if report.effects.len() < report.records.len() => (
+            Standing::Doubtful,
+            "CALIBRATED",
+            "innovations and declared noise agree; no diagnosis could be made".to_owned(),
         ),
         _ => (
             Standing::Good,

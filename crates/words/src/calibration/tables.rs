@@ -1,6 +1,7 @@
 //! Tables of a calibration.
 
 use gyrocal::generated::platform::DRIFT;
+use gyrocal::generated::surveyed::parameters_index as index;
 use gyrocal_document::{Column, Table};
 use gyrocal_record::{AXES, CalibrationReport, Coefficient, SiteReport, printable_line};
 use gyrocal_statistics::format;
@@ -32,15 +33,10 @@ pub(super) fn meaning(name: &str) -> &'static str {
     all.find(|one| one.id == name).map_or("", |one| one.doc)
 }
 
-/// Whether a coefficient is a D_F.
-fn is_constant_drift(name: &str) -> bool {
-    meaning(name).starts_with("D_F of")
-}
-
-/// Whether a coefficient is a D_I.
-pub(super) fn is_mass_unbalance(name: &str) -> bool {
-    meaning(name).starts_with("D_I of")
-}
+/// Places of D_F and D_I of gyros x, y, z among the coefficients.
+const BIASES: [usize; 3] = [index::GYRO_X_BIAS, index::GYRO_Y_BIAS, index::GYRO_Z_BIAS];
+pub(super) const MASS_UNBALANCES: [usize; 3] =
+    [index::GYRO_X_G_X, index::GYRO_Y_G_Y, index::GYRO_Z_G_Z];
 
 /// The parameters of the effects that were given.
 fn given_effects(report: &CalibrationReport) -> Option<Table> {
@@ -115,9 +111,9 @@ fn turn_ons(report: &CalibrationReport) -> Option<Table> {
 fn first_record(report: &CalibrationReport) -> Option<Table> {
     let alone = report.first_record_sigmas.as_ref()?;
     let differ = report.runs.iter().any(|run| run.turn_on.is_some());
-    let pairs = report.coefficients.iter().zip(alone);
-    let rows = pairs.filter(|(one, _)| !(differ && is_constant_drift(&one.name)));
-    let rows = rows.map(|(one, alone)| {
+    let pairs = report.coefficients.iter().zip(alone).enumerate();
+    let rows = pairs.filter(|(place, _)| !(differ && BIASES.contains(place)));
+    let rows = rows.map(|(_, (one, alone))| {
         [
             one.name.clone(),
             format::estimate(0.0, *alone)[1].clone(),
