@@ -200,6 +200,12 @@ fn two_records_are_one_calibration() {
         "{said}"
     );
     assert!(said.contains("first record alone"), "{said}");
+    // What it proposes is a command that runs.
+    let next = said.lines().find(|line| line.contains("gyrocal diagnose"));
+    let (next, _) = next.unwrap().split_once("#").unwrap();
+    let words: Vec<&str> = next.split_whitespace().skip(2).collect();
+    assert_eq!(words[..3], ["diagnose", "one.csv", "two.csv"], "{said}");
+    folder.succeed(&words);
     let alone = both.first_record_sigmas.clone().unwrap();
     for (coefficient, alone) in both.coefficients.iter().zip(&alone) {
         assert!(coefficient.sigma < *alone, "{} {alone}", coefficient.sigma);

@@ -1,7 +1,9 @@
 //! The verdict of `gyrocal calibrate`, in the scale of the diagnosis, and what follows from it.
 
 use gyrocal_answer::Answer;
+use gyrocal_document::Standing;
 use gyrocal_record::{CalibrationReport, FitVerdict};
+use gyrocal_words::calibration_screen;
 
 use super::{JSON, folder, report, unwrapped};
 use crate::diagnose;
@@ -59,9 +61,18 @@ fn a_record_that_fits_is_told_as_such_with_what_to_run_next() {
         said.contains("next gyrocal diagnose r.csv --bench b.toml # all tests"),
         "{said}"
     );
-    let found = report(&folder);
+    let mut found = report(&folder);
     assert_eq!(found.verdict, FitVerdict::Consistent);
     assert!(found.effects[0].causes.is_empty() && found.effects[0].settled);
+    // Without its diagnosis it is less sure.
+    assert_eq!(calibration_screen(&found).standing, Standing::Good);
+    found.effects.clear();
+    let screen = calibration_screen(&found);
+    assert_eq!(screen.standing, Standing::Doubtful);
+    assert!(
+        screen.what.ends_with("no diagnosis could be made"),
+        "{screen:?}"
+    );
 }
 
 #[test]
