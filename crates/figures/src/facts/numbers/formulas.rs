@@ -96,8 +96,8 @@ pub(super) fn findings(part: &Part, to: &mut Checks) {
 /// Geometric means of ratios of sigmas, and the same ratios in the bars and in words.
 pub(super) fn plan(part: &Part, to: &mut Checks) {
     let mean = |head: &str| {
-        let ratios = part.rows("with the best run").map(|(table, row)| {
-            let pair = [head, "record so far"].map(|head| table.number(row, head));
+        let ratios = part.rows("best run").map(|(table, row)| {
+            let pair = [head, "now"].map(|head| table.number(row, head));
             over(&pair, |x| (x[0] / x[1]).ln())
         });
         let ratios: Vec<Span> = ratios.collect::<Option<_>>()?;
@@ -107,20 +107,13 @@ pub(super) fn plan(part: &Part, to: &mut Checks) {
     to.is(
         "best run",
         part.first("sigmas fall to # of the present"),
-        mean("with the best run"),
+        mean("best run"),
     );
     to.is(
         "going on",
         part.first("in the present attitude: sigmas #"),
-        mean("continued"),
+        mean("present attitude"),
     );
-    for head in [
-        "record so far|now",
-        "continued|present attitude",
-        "with the best run|best run",
-    ] {
-        to.again(part, head);
-    }
     let words = part.found(" h\t#°\t#°\t#°\t#");
     for (bar, row) in part.found("°, # h\t#").iter().zip(words) {
         to.is(

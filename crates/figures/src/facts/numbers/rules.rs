@@ -19,7 +19,7 @@ const MICRO: f64 = 1e6;
 type Rule = (&'static str, fn(&Part, &mut Checks));
 
 /// All rules but those of [`SAME`].
-pub(super) const RULES: [Rule; 20] = [
+pub(super) const RULES: [Rule; 19] = [
     (
         "change of an estimate, and over the nominal sigma",
         |part, to| {
@@ -216,21 +216,6 @@ pub(super) const RULES: [Rule; 20] = [
         });
     }),
     ("statistics of a Monte Carlo", monte_carlo),
-    ("noise over the declared one", |part, to| {
-        let found = part
-            .found("accelerometers #, #, #, gyros #, #, # times")
-            .concat();
-        let [table] = &part.with("gyros").collect::<Vec<_>>()[..] else {
-            return;
-        };
-        for (place, shown) in found.into_iter().enumerate() {
-            let head = ["accelerometers", "gyros"][place / 3];
-            let row = table.rows.first().filter(|_| table.rows.len() == 1);
-            let number =
-                row.and_then(|row| table.number(row, &format!("{head}#{}", place % 3 * 3)));
-            to.is("noise", Some(shown), number);
-        }
-    }),
     ("interval of an Allan deviation", |part, to| {
         let confidence = part.first("intervals at a confidence of # %");
         for (table, row) in part.rows("averaging time, s") {
