@@ -1,9 +1,9 @@
 //! The batch estimator: initial guess, Gauss-Newton solution and covariance of several runs.
 
 use gyrocal::estimation::Manifold;
-use gyrocal::estimation::batch::Linearisation;
 use gyrocal::trajectory::{Orientation, angles_rad, platform_c_enu};
 use gyrocal::{Chart, Drift};
+use gyrocal_inference::Pass;
 use gyrocal_record::{Bench, NoiseEstimate};
 
 use crate::coefficients::PARAMETERS;
@@ -293,9 +293,8 @@ where
     solved
         .problem
         .with_run(index, &parameters, |pass| {
-            let tape = solved.solution.tapes[index].as_deref();
-            let pass = Linearisation { tape, ..*pass };
-            noise::estimate(|factors| pass.noise_score(factors))
+            let pass = pass.on(solved.solution.kept[index].as_deref());
+            noise::estimate(|factors| Pass { factors, ..pass }.noise_score())
         })
         .map_err(|error| CalibrationError::pass(index, error))
 }

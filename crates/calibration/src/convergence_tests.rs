@@ -50,7 +50,7 @@ fn problem_at<'a>(
     let options = Options::default();
     let mut problem = single_run_problem(run, rows, settings, &prior, &start, &options);
     let parameters = problem.parameters(0);
-    let points = problem.with_run(0, &parameters, |pass| pass.free_run());
+    let points = problem.free_run(0, &parameters);
     problem.runs[0].points = points.unwrap();
     problem
 }

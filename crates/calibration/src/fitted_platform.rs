@@ -14,10 +14,10 @@ mod several;
 mod unit_start;
 mod values;
 
-use gyrocal::estimation::batch::Walk;
 use gyrocal::generated::catalogue;
 use gyrocal::{Anchored, Catalogue, Discretisation};
 use gyrocal_hypothesis::{ExtraColumns, ModelExtension};
+use gyrocal_inference::Walk;
 use gyrocal_record::{Bench, Record};
 
 use crate::coefficients::PARAMETERS;

@@ -1,7 +1,7 @@
 //! Maximum-likelihood estimate of the noise relative to the declared noise.
 
 use gyrocal::estimation::EstimationError;
-use gyrocal::estimation::batch::NoiseScore;
+use gyrocal_inference::NoiseScore;
 use gyrocal_record::{Bench, NoiseEstimate, NoiseRatio};
 use gyrocal_statistics::NORMAL_97_5;
 use nalgebra::{Cholesky, DMatrix, DVector};

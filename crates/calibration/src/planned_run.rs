@@ -2,12 +2,13 @@
 
 use std::borrow::Cow;
 
-use gyrocal::estimation::batch::{Manifold, Series};
+use gyrocal::estimation::Manifold;
 use gyrocal::generated::catalogue;
 use gyrocal::scalar::Model;
 use gyrocal::trajectory::Orientation;
 use gyrocal::{Anchored, Chart};
 use gyrocal_hypothesis::{Column, Covariate, ExtraColumns};
+use gyrocal_inference::Series;
 use nalgebra::{DMatrix, UnitQuaternion, Vector3};
 
 use crate::attitude::attitude_hypotheses;
@@ -67,15 +68,12 @@ impl PlannedRun<'_> {
     /// # Errors
     /// As [`crate::cramer_rao_bound`].
     pub fn trajectory(&self, options: &Options) -> Result<Vec<Orientation>, CalibrationError> {
-        let none = ExtraColumns::default();
         let points = vec![self.start; self.run.record.len()];
         let problem = self.problem(points, options)?;
         if let Some(unit) = &self.unit {
             return Ok(self.trajectory_of(unit, &problem));
         }
-        problem
-            .with_active(0, self.parameters, &[], &none, |pass| pass.free_run())
-            .map_err(|source| CalibrationError::pass(0, source))
+        problem.free_run(0, self.parameters)
     }
 
     /// Covariates at each row along a trajectory, g.
@@ -266,10 +264,7 @@ mod tests {
         let options = Options::default();
         let points = planned.trajectory(&options).unwrap();
         let problem = planned.problem(points.clone(), &options).unwrap();
-        let none = ExtraColumns::default();
-        let free = problem
-            .with_active(0, planned.parameters, &[], &none, |pass| pass.free_run())
-            .unwrap();
+        let free = problem.free_run(0, planned.parameters).unwrap();
         let far = |(a, b): (&Orientation, &Orientation)| {
             let turn = rotation_between(a, b);
             turn.iter().map(|x| x * x).sum::<f64>().sqrt()

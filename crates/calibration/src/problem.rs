@@ -4,13 +4,14 @@
 //! In every run each parameter of the model is a sum of unknowns ([`RunProblem::parameter_unknowns`]):
 //! a constant drift is that of the mean turn-on plus the offset of the run's own.
 
-use gyrocal::estimation::batch::{Columns, Linearisation, Manifold, Series, Walk, Walks};
+use gyrocal::estimation::Manifold;
 use gyrocal::trajectory::Orientation;
 use gyrocal::{Chart, Integration};
+use gyrocal_inference::{Column, ExtraColumns, Pass, Series, Trajectory, Walk, Walks};
 
+use crate::error::CalibrationError;
 use crate::run::{Conditions, WeightedRows};
 use crate::work;
-use gyrocal_hypothesis::ExtraColumns;
 
 /// One unknown of the joint problem.
 #[derive(Clone, Debug, PartialEq)]
@@ -121,7 +122,7 @@ pub(crate) struct Problem<'a, D, I> {
     pub(crate) values: Vec<f64>,
 }
 
-impl<D, I> Problem<'_, D, I>
+impl<'a, D, I> Problem<'a, D, I>
 where
     D: Manifold<3, 3, Inputs = Chart<f64, I>, Point = Orientation>,
     I: Conditions,
@@ -159,80 +160,16 @@ where
             .collect()
     }
 
-    /// Makes a pass over a run with its own columns.
-    pub(crate) fn with_run<R>(
-        &self,
+    /// A run with its trajectory, with derivatives by the `wanted` parameters.
+    pub(crate) fn trajectory<'s>(
+        &'s self,
         index: usize,
-        parameters: &[f64],
-        pass: impl FnOnce(&Linearisation<'_, D, WeightedRows<'_>, ExtraColumns, 3, 3>) -> R,
-    ) -> R {
-        self.with_columns(index, parameters, &self.runs[index].further, pass)
-    }
-
-    /// Makes a pass over a run with the columns of its parameters and `further` ones.
-    pub(crate) fn with_columns<R, C: Columns<3, 3>>(
-        &self,
-        index: usize,
-        parameters: &[f64],
-        further: &C,
-        pass: impl FnOnce(&Linearisation<'_, D, WeightedRows<'_>, C, 3, 3>) -> R,
-    ) -> R {
-        self.with_active(index, parameters, &self.active(index), further, pass)
-    }
-
-    /// Makes a pass over a run without the values of some rows.
-    pub(crate) fn without_rows<R>(
-        &self,
-        index: usize,
-        parameters: &[f64],
-        left_out: core::ops::Range<usize>,
-        pass: impl FnOnce(&Linearisation<'_, D, WeightedRows<'_>, ExtraColumns, 3, 3>) -> R,
-    ) -> R {
-        let mut rows = self.runs[index].rows.clone();
-        rows.exclude(left_out);
-        let active = self.active(index);
-        let further = &self.runs[index].further;
-        self.with_active(index, parameters, &active, further, |all| {
-            pass(&Linearisation {
-                series: &rows,
-                ..*all
-            })
-        })
-    }
-
-    /// Makes a pass over the first `rows` rows of a run.
-    pub(crate) fn with_first_rows<R>(
-        &self,
-        index: usize,
-        parameters: &[f64],
-        rows: usize,
-        pass: impl FnOnce(&Linearisation<'_, D, WeightedRows<'_>, ExtraColumns, 3, 3>) -> R,
-    ) -> R {
+        parameters: &'s [f64],
+        wanted: &'s [usize],
+        further: &'s ExtraColumns,
+    ) -> Trajectory<'s, D, WeightedRows<'a>, 3, 3> {
         let run = &self.runs[index];
-        let series = run.rows.first(rows);
-        let rows = rows.min(run.points.len());
-        self.with_run(index, parameters, |all| {
-            pass(&Linearisation {
-                series: &series,
-                points: &run.points[..rows],
-                walks: all.walks.over_first(rows),
-                ..*all
-            })
-        })
-    }
-
-    /// Makes a pass over a run with the columns of the `active` parameters and `further` ones.
-    pub(crate) fn with_active<R, C: Columns<3, 3>>(
-        &self,
-        index: usize,
-        parameters: &[f64],
-        active: &[usize],
-        further: &C,
-        pass: impl FnOnce(&Linearisation<'_, D, WeightedRows<'_>, C, 3, 3>) -> R,
-    ) -> R {
-        let run = &self.runs[index];
-        work::carry(active.len() + further.count());
-        pass(&Linearisation {
+        Trajectory {
             model: self.model,
             inputs: run.chart,
             series: &run.rows,
@@ -243,18 +180,89 @@ where
             prior_covariance: run.prior_covariance,
             points: &run.points,
             parameters,
-            active,
+            wanted,
             further,
-            tape: None,
             walks: Walks {
                 walks: &run.walks,
                 changes: &run.walk_changes,
             },
-        })
+        }
+    }
+
+    /// Open-loop simulation of a run from its first attitude.
+    pub(crate) fn free_run(
+        &self,
+        index: usize,
+        parameters: &[f64],
+    ) -> Result<Vec<Orientation>, CalibrationError> {
+        self.trajectory(index, parameters, &[], &self.runs[index].further)
+            .free_run()
+            .map_err(|error| CalibrationError::pass(index, error))
+    }
+
+    /// Makes a pass over a run with its own columns.
+    pub(crate) fn with_run<R>(
+        &self,
+        index: usize,
+        parameters: &[f64],
+        pass: impl FnOnce(&Pass<'_>) -> R,
+    ) -> R {
+        let further = &self.runs[index].further;
+        self.with_active(index, parameters, &self.active(index), further, pass)
+    }
+
+    /// The same over its first `rows` rows.
+    pub(crate) fn with_first_rows<R>(
+        &self,
+        index: usize,
+        parameters: &[f64],
+        rows: usize,
+        pass: impl FnOnce(&Pass<'_>) -> R,
+    ) -> R {
+        let (active, further) = (self.active(index), &self.runs[index].further);
+        self.with_pass((index, rows), parameters, &active, further, pass)
+    }
+
+    /// Makes a pass over a run with the columns of the `active` parameters and `further` ones.
+    pub(crate) fn with_active<R>(
+        &self,
+        index: usize,
+        parameters: &[f64],
+        active: &[usize],
+        further: &ExtraColumns,
+        pass: impl FnOnce(&Pass<'_>) -> R,
+    ) -> R {
+        self.with_pass((index, usize::MAX), parameters, active, further, pass)
+    }
+
+    fn with_pass<R>(
+        &self,
+        (index, rows): (usize, usize),
+        parameters: &[f64],
+        active: &[usize],
+        further: &ExtraColumns,
+        pass: impl FnOnce(&Pass<'_>) -> R,
+    ) -> R {
+        let own = active.iter().map(|parameter| Column::Parameter {
+            parameter: *parameter,
+        });
+        let columns: Vec<Column> = own.chain(further.columns().iter().cloned()).collect();
+        let mut wanted: Vec<usize> = columns.iter().filter_map(Column::parameter).collect();
+        wanted.sort_unstable();
+        wanted.dedup();
+        work::carry(columns.len());
+        let trajectory = self.trajectory(index, parameters, &wanted, further);
+        let result = pass(&Pass {
+            walks: trajectory.walks,
+            rows,
+            ..Pass::new(&trajectory, &columns)
+        });
+        work::count_rows(rows.min(trajectory.points.len()));
+        result
     }
 
     /// Indices of the parameters of the model that have an unknown in a run.
-    fn active(&self, index: usize) -> Vec<usize> {
+    pub(crate) fn active(&self, index: usize) -> Vec<usize> {
         let unknowns = &self.runs[index].parameter_unknowns;
         (0..unknowns.len())
             .filter(|parameter| !unknowns[*parameter].is_empty())

@@ -2,8 +2,8 @@
 
 use gyrocal::Chart;
 use gyrocal::estimation::Manifold;
-use gyrocal::estimation::batch::Series;
 use gyrocal::trajectory::Orientation;
+use gyrocal_inference::Series;
 
 use crate::error::CalibrationError;
 use crate::problem::Problem;

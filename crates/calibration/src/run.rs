@@ -3,15 +3,14 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use gyrocal::estimation::batch::Series;
 use gyrocal::generated::strapdown::StrapdownInputs;
 use gyrocal::generated::surveyed::SurveyedInputs;
 use gyrocal::{Chart, ChartInputs, Regressors};
+use gyrocal_inference::Series;
 use gyrocal_record::{Bench, Record};
 
 use crate::gyro_axes::GyroAxes;
 use crate::temperature::{TemperatureCourse, TemperatureScale};
-use crate::work;
 
 /// Model inputs that may depend on time, temperature and the axes of the gyros.
 pub(crate) trait Conditions: ChartInputs<f64> {
@@ -105,16 +104,6 @@ impl<'a> WeightedRows<'a> {
         }
     }
 
-    /// The first `rows` of these rows.
-    pub(crate) fn first(&self, rows: usize) -> Self {
-        let mut first = self.clone();
-        first.rows = rows.min(self.rows);
-        if let Some(weights) = &mut first.weights {
-            weights.truncate(first.rows);
-        }
-        first
-    }
-
     /// Gives the values of some rows weight 0.
     pub(crate) fn exclude(&mut self, rows: core::ops::Range<usize>) {
         let count = self.rows;
@@ -168,8 +157,6 @@ impl<I: Conditions> Series<Chart<f64, I>, 3> for WeightedRows<'_> {
     }
 
     fn measured(&self, row: usize) -> [f64; 3] {
-        // Every pass asks for every row once.
-        work::count_row();
         let mut measured = self.record.accel_g[row];
         if let Some(weights) = &self.weights {
             for (value, weight) in measured.iter_mut().zip(weights[row]) {

@@ -4,8 +4,9 @@
 use std::sync::Arc;
 
 use gyrocal::Chart;
-use gyrocal::estimation::batch::{Linearisation, Manifold, Smoothed, Tape};
+use gyrocal::estimation::Manifold;
 use gyrocal::trajectory::{Orientation, turned};
+use gyrocal_inference::{KeptRecord, Smoothed};
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 use crate::error::CalibrationError;
@@ -20,8 +21,8 @@ pub(crate) const MAX_PASSES: usize = 40;
 /// deviations need a dozen.
 pub(crate) const MAX_PASSES_AGAIN: usize = 30;
 
-/// Longest record whose linearised steps are kept between passes, in rows of some 500 bytes each.
-const LONGEST_TAPE: usize = 400_000;
+/// Longest record that is kept linearised between passes, in rows of some 800 bytes each.
+const LONGEST_KEPT: usize = 400_000;
 
 /// Most halvings of a step that does not lower the cost.
 const MAX_HALVINGS: usize = 12;
@@ -68,8 +69,8 @@ pub(crate) struct Solution {
     pub(crate) rows: usize,
     /// Sum of the logarithms of the innovation variances.
     pub(crate) log_variance: f64,
-    /// Linearised steps of the last pass over each record that is short enough.
-    pub(crate) tapes: Vec<Option<Arc<Tape<3>>>>,
+    /// Each record that is short enough, linearised about the solution.
+    pub(crate) kept: Vec<Option<Arc<KeptRecord>>>,
     /// Gauss-Newton steps made.
     pub(crate) iterations: usize,
 }
@@ -82,7 +83,7 @@ struct Linearised {
     values: usize,
     rows: usize,
     log_variance: f64,
-    tapes: Vec<Option<Arc<Tape<3>>>>,
+    kept: Vec<Option<Arc<KeptRecord>>>,
 }
 
 /// A Gauss-Newton step.
@@ -90,7 +91,7 @@ struct Step {
     /// Change of every unknown.
     values: DVector<f64>,
     /// Correction of the attitude, rad, and of the walks at every row of every record.
-    corrections: Vec<Smoothed<3>>,
+    corrections: Vec<Smoothed>,
     /// Length (6), in standard deviations of the whole problem.
     length: f64,
 }
@@ -132,8 +133,8 @@ where
             let last = step.length < LAST_STEP.max(LAST_SHARE * cost.sqrt())
                 || (is_flat && step.length > SLOW * before_length);
             before_length = step.length;
-            // Long records: the steps of one point at a time.
-            point.tapes.clear();
+            // Long records: one linearisation at a time.
+            point.kept.clear();
             let before: Vec<_> = self
                 .runs
                 .iter()
@@ -188,17 +189,16 @@ where
             values: 0,
             rows: 0,
             log_variance: 0.0,
-            tapes: Vec::with_capacity(self.runs.len()),
+            kept: Vec::with_capacity(self.runs.len()),
         };
         for (index, run) in self.runs.iter().enumerate() {
             let parameters = self.parameters(index);
-            let (reduced, tape) = self
+            let (reduced, kept) = self
                 .with_run(index, &parameters, |pass| {
-                    if run.points.len() > LONGEST_TAPE {
-                        return pass.reduce(|_| ()).map(|reduced| (reduced, None));
-                    }
-                    let (reduced, tape) = pass.reduce_and_keep(|_| ())?;
-                    Ok((reduced, Some(Arc::new(tape))))
+                    let is_short = run.points.len() <= LONGEST_KEPT;
+                    let kept = is_short.then(|| KeptRecord::new(pass.record)).transpose()?;
+                    let reduced = pass.on(kept.as_ref()).reduce_with_cost(|_| ())?;
+                    Ok((reduced, kept.map(Arc::new)))
                 })
                 .map_err(|error| CalibrationError::pass(index, error))?;
             point.trajectory_cost += reduced.trajectory_cost;
@@ -206,7 +206,7 @@ where
             point.rows += reduced.rows;
             point.log_variance += reduced.log_variance;
             add_gram(&mut point.gram, &reduced.gram, &run.column_unknowns());
-            point.tapes.push(tape);
+            point.kept.push(kept);
         }
         Ok(point)
     }
@@ -244,8 +244,7 @@ where
                     .map(|unknowns| unknowns.iter().map(|unknown| values[*unknown]).sum())
                     .collect();
                 self.with_run(index, &parameters, |pass| {
-                    let tape = point.tapes[index].as_deref();
-                    Linearisation { tape, ..*pass }.smooth(&change)
+                    pass.on(point.kept[index].as_deref()).smooth(&change)
                 })
                 .map_err(|error| CalibrationError::pass(index, error))
             })
@@ -284,9 +283,10 @@ where
             for (point, (before, correction)) in run
                 .points
                 .iter_mut()
-                .zip(points.iter().zip(&smoothed.corrections))
+                .zip(points.iter().zip(smoothed.corrections.chunks_exact(3)))
             {
-                *point = turned(before, &correction.map(|angle| share * angle));
+                let turn = core::array::from_fn(|axis| share * correction[axis]);
+                *point = turned(before, &turn);
             }
             run.walk_changes.resize(smoothed.walks.len(), 0.0);
             for (index, (change, correction)) in
@@ -306,7 +306,7 @@ where
             values: point.values,
             rows: point.rows,
             log_variance: point.log_variance,
-            tapes: point.tapes,
+            kept: point.kept,
             iterations,
         }
     }

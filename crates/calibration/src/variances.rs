@@ -264,7 +264,9 @@ where
         further.extend(turns, f64::INFINITY);
         let parameters = self.parameters(run);
         let reduced = self
-            .with_columns(run, &parameters, &further, |pass| pass.reduce(|_| ()))
+            .with_active(run, &parameters, &self.active(run), &further, |pass| {
+                pass.reduce(|_| ())
+            })
             .map_err(|error| CalibrationError::pass(run, error))?;
         let mut cross = DMatrix::zeros(uncertainty.estimated.len(), 3);
         for (place, unknown) in uncertainty.estimated.iter().enumerate() {

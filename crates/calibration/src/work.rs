@@ -41,13 +41,14 @@ pub(crate) fn differentiate(derivatives: usize) {
     OF_A_ROW.set(OF_A_ROW.get() + products);
 }
 
-/// A pass has come to a row.
-pub(crate) fn count_row() {
-    SPENT.set(SPENT.get().wrapping_add(OF_A_ROW.get()));
+/// A pass has gone over so many rows.
+pub(crate) fn count_rows(rows: usize) {
+    let all = OF_A_ROW.get().wrapping_mul(rows as u64);
+    SPENT.set(SPENT.get().wrapping_add(all));
 }
 
 /// A streaming filter has come to a row.
 pub(crate) fn count_filtered_row() {
     carry(FILTER);
-    count_row();
+    count_rows(1);
 }

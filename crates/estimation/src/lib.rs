@@ -101,7 +101,6 @@
 //!
 //! - `std` (default): fused multiply-add where the target has it. Nothing else needs it.
 //! - `alloc`: [`VecStorage`], for a number of states known at run time.
-//! - `batch`: estimation from whole records; matrix products then use the standard library.
 //! - `nalgebra`: `dense`, the textbook filter on dense matrices, as a reference.
 //!
 //! # What it does not do
@@ -117,8 +116,6 @@
 #[cfg(feature = "alloc")]
 extern crate alloc;
 
-#[cfg(feature = "batch")]
-pub mod batch;
 mod covariance;
 #[cfg(feature = "nalgebra")]
 pub mod dense;
@@ -151,4 +148,4 @@ pub use recentring::Recentring;
 #[cfg(feature = "alloc")]
 pub use storage::VecStorage;
 pub use storage::{ArrayStorage, Buffers, Storage, View};
-pub use transition::Integration;
+pub use transition::{Derivatives, Integration, Integrator};

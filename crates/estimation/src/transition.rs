@@ -36,27 +36,31 @@ impl Integration {
 }
 
 /// Derivatives of the moving states at the end of a step, except the parameter columns of Φ,
-/// which are in [`crate::Buffers::transition`].
+/// which are in [`Integrator::columns`].
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Derivatives<T, const M: usize> {
+pub struct Derivatives<T, const M: usize> {
     /// Moving columns of Φ.
-    pub(crate) moving: [[T; M]; M],
+    pub moving: [[T; M]; M],
     /// Γ: effect of noise held over the step. Zero for a model whose noise enters as parameters
     /// do: Γ then consists of their columns.
-    pub(crate) noise: [[T; M]; M],
+    pub noise: [[T; M]; M],
 }
 
 /// Model, inputs and workspace of an integration.
-pub(crate) struct Integrator<'a, T, D, I, const M: usize, const Y: usize> {
-    pub(crate) model: &'a D,
-    pub(crate) inputs: &'a I,
-    pub(crate) parameters: &'a [T],
+#[derive(Debug)]
+pub struct Integrator<'a, T, D, I, const M: usize, const Y: usize> {
+    /// The model.
+    pub model: &'a D,
+    /// Its inputs, held over the step.
+    pub inputs: &'a I,
+    /// Its parameters, p of them.
+    pub parameters: &'a [T],
     /// Receives the parameter columns of Φ: M × p, by rows.
-    pub(crate) columns: &'a mut [T],
+    pub columns: &'a mut [T],
     /// Workspace of 4 × M × p numbers whose structural zeros are zero.
-    pub(crate) stages: &'a mut [T],
+    pub stages: &'a mut [T],
     /// True if the moving states start at zero, where models have a shorter Jacobian.
-    pub(crate) at_origin: bool,
+    pub at_origin: bool,
 }
 
 impl<T, D, const M: usize, const Y: usize> Integrator<'_, T, D, D::Inputs, M, Y>
@@ -65,8 +69,11 @@ where
     D: Model<T, M, Y>,
 {
     /// Integrates the moving states over `dt` and their derivatives with them.
+    ///
+    /// # Panics
+    /// If columns and stages have other lengths than [`Self`] says.
     #[inline(always)]
-    pub(crate) fn integrate(
+    pub fn integrate(
         &mut self,
         integration: Integration,
         dt: T,

@@ -2,10 +2,10 @@
 
 use gyrocal_scalar::effect::Enters;
 
-use crate::column::Column;
 use crate::hypothesis::Hypothesis;
 use crate::model::FittedModel;
 use crate::null_distribution::DETECTION_PENALTY_FRACTION;
+use gyrocal_inference::Column;
 
 /// An effect in the model.
 #[derive(Clone, Debug)]

@@ -9,12 +9,12 @@ use gyrocal_statistics::math::ln;
 use nalgebra::DVector;
 
 use crate::bank::{Principal, ScoreBank};
-use crate::column::Column;
 use crate::hypothesis::Hypothesis;
 use crate::model::FittedModel;
 use crate::pattern::{ChannelIndex, Pattern, Unmodelled};
 use crate::plant::Plant;
 use crate::rows::{Covariate, Rows};
+use gyrocal_inference::Column;
 
 /// Knots of a function, from the least to the largest value of the covariate in the record.
 const KNOTS: usize = 10;

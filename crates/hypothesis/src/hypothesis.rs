@@ -3,11 +3,11 @@
 use gyrocal_scalar::effect::{Effect, EffectKind, Role};
 use gyrocal_statistics::math::pow;
 
-use crate::column::Column;
 use crate::model::ModelExtension;
 use crate::plant::Plant;
 use crate::rows::Rows;
 use crate::signature::{Source, signature};
+use gyrocal_inference::Column;
 
 /// Onsets on the grid of the search: they are two and a half percent of the record apart, across
 /// which the statistic of a step falls by a few percent.

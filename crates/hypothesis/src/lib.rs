@@ -104,7 +104,6 @@ mod accepted;
 mod bank;
 mod budget;
 mod by_fits;
-mod column;
 mod context;
 mod continuation;
 mod curve;
@@ -145,7 +144,6 @@ mod walk_findings;
 mod walks;
 
 pub use bank::{JointScore, NominalEstimate, ScoreBank};
-pub use column::{Column, ExtraColumns};
 pub use context::SearchOptions;
 pub use continuation::{Phase, RecordOffset, continued, continued_shapes, recurs};
 pub use error::Singular;
@@ -153,6 +151,7 @@ pub use finding::{
     Alternative, CONFIDENCE_SET_DEVIANCE, EffectEstimate, ExactEquivalent, Finding, NoneOfThese,
 };
 pub use given::{FittedWith, fit_with};
+pub use gyrocal_inference::{Column, ExtraColumns};
 pub use hypothesis::{Hypothesis, HypothesisSet, Selection, Unavailable, Variant};
 pub use information::{information, sigmas};
 pub use model::{FittedModel, ModelExtension, StateJump};

@@ -8,11 +8,11 @@ use gyrocal_statistics::math::{cos, ln, sin};
 use gyrocal_statistics::{FrequencySearch, fourier_powers, median_interval_s};
 
 use crate::bank::ScoreBank;
-use crate::column::Column;
 use crate::model::{FittedModel, StateJump};
 use crate::pattern::{ChannelIndex, Pattern, Unmodelled};
 use crate::plant::Plant;
 use crate::rows::Rows;
+use gyrocal_inference::Column;
 
 /// Lines that are tried in each channel.
 const TRIED: usize = 4;

@@ -29,7 +29,6 @@ use gyrocal_statistics::math::{exp, ln, ln_1p};
 use nalgebra::{Cholesky, DMatrix, SymmetricEigen};
 
 use crate::bank::ScoreBank;
-use crate::column::Column;
 use crate::context::SearchContext;
 use crate::finding::{Finding, NoneOfThese};
 use crate::fitted_stage::FittedStage;
@@ -39,6 +38,7 @@ use crate::plant::Plant;
 use crate::result::ConditionalResult;
 use crate::rows::Rows;
 use crate::smooth_functions::{Sampling, families};
+use gyrocal_inference::Column;
 
 /// Distance over which such functions are correlated, in knots.
 const SMOOTH_KNOTS: f64 = 1.5;

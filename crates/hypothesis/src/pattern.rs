@@ -4,9 +4,9 @@
 use gyrocal_scalar::effect::Channel;
 use gyrocal_statistics::{chi_square_equivalent, ln_chi_square_tail};
 
-use crate::column::Column;
 use crate::plant::Plant;
 use crate::rows::Rows;
+use gyrocal_inference::Column;
 
 /// Harmonics of a natural period at which effects together look like a line.
 const HARMONICS: u32 = 3;

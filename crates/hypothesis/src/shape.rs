@@ -11,12 +11,12 @@ use gyrocal_statistics::math::{exp, ln};
 
 use crate::accepted::{Accepted, value_places};
 use crate::bank::{GramProducts, ScoreBank};
-use crate::column::Column;
 use crate::context::SearchContext;
 use crate::hypothesis::Hypothesis;
 use crate::model::FittedModel;
 use crate::rows::Rows;
 use crate::signature::profiles;
+use gyrocal_inference::Column;
 
 /// Points of a grid between the neighbours of the best point so far. A pass over the record costs as much
 /// as some ten columns, so that few grids with many points are the cheapest.

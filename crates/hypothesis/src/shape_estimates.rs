@@ -2,7 +2,6 @@
 //! sizes, over the noise that is left where all of these are unknown.
 
 use crate::accepted::Accepted;
-use crate::column::Column;
 use crate::context::SearchContext;
 use crate::finding::EffectEstimate;
 use crate::fitted_stage::FittedStage;
@@ -11,6 +10,7 @@ use crate::null_distribution::GaussianDraws;
 use crate::shape::ShapeScale;
 use crate::shape_interval::shape_interval;
 use crate::signature::shape_derivative;
+use gyrocal_inference::Column;
 
 /// The effects of a model with the noise that their intervals are over.
 pub(crate) struct ShapeEstimates<'a, 'c, F> {

@@ -12,12 +12,12 @@
 use gyrocal_statistics::{chi_square_quantile, student_quantile};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
-use crate::column::Column;
 use crate::context::SearchContext;
 use crate::hypothesis::Hypothesis;
 use crate::model::FittedModel;
 use crate::null_distribution::GaussianDraws;
 use crate::shape::{ShapeProfile, ShapeScale};
+use gyrocal_inference::Column;
 
 /// Coverage of the intervals.
 const COVERAGE: f64 = 0.95;

@@ -2,9 +2,9 @@
 
 use gyrocal_scalar::effect::{Effect, EffectKind, EffectParameter, Enters};
 
-use crate::column::Column;
 use crate::plant::Plant;
 use crate::rows::Rows;
+use gyrocal_inference::Column;
 
 /// One column of a signature.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,12 +4,13 @@ use core::ops::Range;
 
 use gyrocal_answer::{Gain, Prediction};
 use gyrocal_hypothesis::{FittedModel as _, Searched};
+use gyrocal_inference::{Pass, Reduced};
 use gyrocal_statistics::math::ln;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
+use crate::dynamics::reduce;
 use crate::error::PlantError;
 use crate::fitted::FittedPlant;
-use crate::pass::{Keep, Reduced, reduce};
 use crate::prediction::least_prior;
 
 /// Parts of one record; of several each is a part.
@@ -76,11 +77,11 @@ impl FittedPlant {
         ratios: &[f64],
     ) -> Result<Option<f64>, PlantError> {
         let lines = self.lines();
-        let noise = self.problem.variances(ratios);
-        let mut lin = self.linearised(&lines)?.clone();
-        let outputs = noise.outputs.len();
-        lin.residuals[without.start * outputs..without.end * outputs].fill(f64::NAN);
-        let reduced = reduce(&lin, &noise, &lines, Keep::Nothing).ok_or(PlantError::Singular)?;
+        let noise = self.problem.noise(ratios);
+        let reduced = reduce(&Pass {
+            left_out: &without,
+            ..self.linearised(&lines)?.pass(&noise, &lines)
+        })?;
         Ok(self.integrated(&reduced))
     }
 

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use gyrocal_inference::{Column, Layout, LinearisedRows, Pass, Reduced};
+
 use crate::error::PlantError;
 use crate::functions::{Functions, OutputsAt, Point, RatesAt, Sizes, Workspace};
 use crate::lines::Course;
@@ -16,28 +18,43 @@ const STAGES: [(f64, f64); 4] = [
     (1.0, 1.0 / 6.0),
 ];
 
-/// A model about a trajectory: all that passes need.
-#[derive(Clone, Debug, Default)]
+/// A plant about a trajectory.
+#[derive(Clone, Debug)]
 pub(crate) struct Linearised {
-    pub(crate) sizes: Option<Sizes>,
-    /// Parameters that there are derivatives by, in the order of their columns.
-    pub(crate) parameters: Arc<[usize]>,
-    /// For each step the derivative of the next states by the states, by rows.
-    pub(crate) by_states: Vec<f64>,
-    /// By these parameters.
-    pub(crate) by_parameters: Vec<f64>,
-    /// By the noises, each held over the step.
+    pub(crate) rows: LinearisedRows,
+    /// For each step the derivative of the next states by the noises, each held over the step, times their declared
+    /// standard deviations there, by rows.
     pub(crate) by_noises: Vec<f64>,
-    /// Next states of the trajectory less those of the model.
-    pub(crate) defects: Vec<f64>,
-    /// For each row outputs less those of the model; NaN where one is missing.
-    pub(crate) residuals: Vec<f64>,
-    /// Derivative of the outputs by the states.
-    pub(crate) out_by_states: Vec<f64>,
-    /// By these parameters.
-    pub(crate) out_by_parameters: Vec<f64>,
-    /// Length of each step, s.
-    pub(crate) step_s: Vec<f64>,
+}
+
+impl Linearised {
+    /// A pass with some columns and a noise.
+    pub(crate) fn pass<'p>(&'p self, noise: &'p FittedNoise, lines: &'p [Column]) -> Pass<'p> {
+        Pass {
+            factors: &noise.factors,
+            loose: &noise.loose,
+            ..Pass::new(&self.rows, lines)
+        }
+    }
+}
+
+/// FittedNoise of a fit.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct FittedNoise {
+    /// Variances over the declared ones: outputs, then noises of rates.
+    pub(crate) factors: Vec<f64>,
+    /// Further variance of each state in each step, while a fit is on its way; none else.
+    pub(crate) loose: Vec<f64>,
+}
+
+/// Eliminates the states.
+///
+/// # Errors
+/// [`PlantError::Singular`] if the numbers do not suffice.
+pub(crate) fn reduce(pass: &Pass<'_>) -> Result<Reduced, PlantError> {
+    let reduced = pass.reduce(|_| ()).map_err(|_| PlantError::Singular)?;
+    let is_finite = reduced.gram.iter().all(|value| value.is_finite());
+    is_finite.then_some(reduced).ok_or(PlantError::Singular)
 }
 
 /// Evaluation of a plant along a record.
@@ -225,18 +242,17 @@ impl<'a> Dynamics<'a> {
         let wanted = Arc::clone(&self.wanted);
         let p = wanted.len();
         let rows = self.record.len();
-        let mut lin = Linearised {
-            sizes: Some(self.sizes),
+        let mut lin = LinearisedRows::new(Layout {
+            states: n,
+            outputs: y,
+            noises: w,
             parameters: Arc::clone(&wanted),
-            by_states: Vec::with_capacity(rows * n * n),
-            by_parameters: Vec::with_capacity(rows * n * p),
-            by_noises: Vec::with_capacity(rows * n * w),
-            defects: Vec::with_capacity(rows * n),
-            residuals: Vec::with_capacity(rows * y),
-            out_by_states: Vec::with_capacity(rows * y * n),
-            out_by_parameters: Vec::with_capacity(rows * y * p),
-            step_s: Vec::with_capacity(rows),
-        };
+            of_outputs: p,
+        });
+        let mut by_noises = Vec::with_capacity(rows * n * w);
+        let declared = &self.plant.description;
+        let variances = declared.outputs.iter().map(|one| one.sigma.powi(2));
+        let variances: Vec<f64> = variances.collect();
         let mut out = OutputsAt::new(self.sizes);
         let mut step = StepMemory::new(self.sizes, p);
         for row in 0..rows {
@@ -250,7 +266,6 @@ impl<'a> Dynamics<'a> {
             };
             self.functions
                 .outputs_with(at, &mut self.workspace, &mut out);
-            let first = lin.residuals.len();
             let measured = &self.record.outputs[row * y..(row + 1) * y];
             let mut predicted = out.values.clone();
             course.add_to_outputs(row, &mut predicted);
@@ -259,7 +274,7 @@ impl<'a> Dynamics<'a> {
             if !predicted.iter().all(|value| value.is_finite()) {
                 return Err(PlantError::NotFinite { row });
             }
-            debug_assert_eq!(lin.residuals.len(), first + y);
+            lin.variances.extend_from_slice(&variances);
             lin.out_by_states.extend_from_slice(&out.by_states);
             for by in out.by_parameters.chunks_exact(self.sizes.parameters.max(1)) {
                 lin.out_by_parameters
@@ -277,15 +292,27 @@ impl<'a> Dynamics<'a> {
             if !step.by_all.iter().all(|value| value.is_finite()) {
                 return Err(PlantError::NotFinite { row });
             }
+            let interval_s = self.record.time_s[row + 1] - self.record.time_s[row];
+            lin.step_s.push(interval_s);
+            let first = by_noises.len();
             for by in step.by_all.chunks_exact(n + p + w) {
                 lin.by_states.extend_from_slice(&by[..n]);
                 lin.by_parameters.extend_from_slice(&by[n..n + p]);
-                lin.by_noises.extend_from_slice(&by[n + p..]);
+                let noises = by[n + p..].iter().zip(&declared.noises);
+                by_noises.extend(noises.map(|(by, one)| by * one.density / interval_s.sqrt()));
             }
-            let interval_s = self.record.time_s[row + 1] - self.record.time_s[row];
-            lin.step_s.push(interval_s);
+            let own = &by_noises[first..];
+            for noise in 0..w {
+                for i in 0..n {
+                    let by = own[i * w + noise];
+                    lin.shares.extend((0..=i).map(|j| by * own[j * w + noise]));
+                }
+            }
         }
-        Ok(lin)
+        Ok(Linearised {
+            rows: lin,
+            by_noises,
+        })
     }
 
     /// A step with its derivatives: the variational equation by the same stages.

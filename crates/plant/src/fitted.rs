@@ -8,12 +8,11 @@ use gyrocal_answer::Starts;
 use gyrocal_hypothesis::{Column, FittedModel, ModelExtension, RateNoise, Rows};
 use nalgebra::DMatrix;
 
-use crate::dynamics::{Dynamics, Linearised};
+use crate::dynamics::{Dynamics, Linearised, reduce};
 use crate::error::PlantError;
 use crate::later_starts::eliminated;
-use crate::lines::Line;
+use crate::lines::of_search;
 use crate::loaded::LoadedPlant;
-use crate::pass::{Keep, Reduced, reduce};
 use crate::problem::Problem;
 use crate::record::PlantRecord;
 use crate::solve::{Iterate, Solution, Solver};
@@ -158,43 +157,49 @@ impl FittedPlant {
     /// # Errors
     /// [`PlantError::Singular`].
     pub fn whitened(&self) -> Result<Vec<(usize, usize, f64)>, PlantError> {
-        Ok(self.pass(&[], Keep::Innovations)?.whitened)
+        let noise = self.problem.noise(&self.ratios);
+        let mut whitened = Vec::new();
+        self.linearised(&[])?
+            .pass(&noise, &[])
+            .reduce(|seen| whitened.push((seen.row, seen.output, seen.columns[0])))
+            .map_err(|_| PlantError::Singular)?;
+        Ok(whitened)
     }
 
-    pub(crate) fn lines(&self) -> Vec<Line> {
+    pub(crate) fn lines(&self) -> Vec<Column> {
         self.problem.lines(&self.extension)
     }
 
-    pub(crate) fn pass(&self, lines: &[Line], keep: Keep) -> Result<Reduced, PlantError> {
-        let noise = self.problem.variances(&self.ratios);
-        let lin = self.linearised(lines)?;
-        reduce(lin, &noise, lines, keep).ok_or(PlantError::Singular)
+    /// The Gram matrix of some columns, the states eliminated.
+    pub(crate) fn gram(&self, lines: &[Column]) -> Result<DMatrix<f64>, PlantError> {
+        let noise = self.problem.noise(&self.ratios);
+        Ok(reduce(&self.linearised(lines)?.pass(&noise, lines))?.gram)
     }
 
     /// The model about its fit, with derivatives by the parameters of some lines.
-    pub(crate) fn linearised(&self, lines: &[Line]) -> Result<&Linearised, PlantError> {
+    pub(crate) fn linearised(&self, lines: &[Column]) -> Result<&Linearised, PlantError> {
         let solution = &self.solution;
-        let own = &solution.lin.parameters;
-        let mut parameters = lines.iter().filter_map(Line::parameter);
-        if parameters.all(|one| own.binary_search(&one).is_ok()) {
+        let own = &solution.lin.rows.layout;
+        let mut parameters = lines.iter().filter_map(Column::parameter);
+        if parameters.all(|one| own.place(one).is_some()) {
             return Ok(&solution.lin);
         }
         if let Some(whole) = solution.whole.get() {
             return Ok(whole);
         }
         let problem = &*self.problem;
-        let noise = problem.variances(&self.ratios);
+        let noise = problem.noise(&self.ratios);
         let course = Solver::new(problem, &self.extension, noise).course(&solution.at.values);
         let mut dynamics = Dynamics::new(&problem.plant, &problem.record, problem.substeps);
         let whole = dynamics.linearise(&course, &solution.at.points)?;
         Ok(solution.whole.get_or_init(|| whole))
     }
 
-    fn further(&self, columns: &[Column]) -> Vec<Line> {
+    fn further(&self, columns: &[Column]) -> Vec<Column> {
         let (states, steps) = self.problem.shape();
         let lines = columns.iter();
         lines
-            .map(|column| Line::of(column, states, steps, &self.problem.record.starts))
+            .map(|column| of_search(column, states, steps, &self.problem.record.starts))
             .collect()
     }
 
@@ -204,7 +209,7 @@ impl FittedPlant {
         ratios: Vec<f64>,
         start: Iterate,
     ) -> Result<Self, PlantError> {
-        let solver = Solver::new(&self.problem, extension, self.problem.variances(&ratios));
+        let solver = Solver::new(&self.problem, extension, self.problem.noise(&ratios));
         let solution = solver.solve(start)?;
         let problem = Arc::clone(&self.problem);
         let starts = self.starts;
@@ -247,10 +252,10 @@ impl FittedPlant {
     }
 
     /// The Gram matrix of some lines, with the initial states of later records eliminated.
-    pub(crate) fn shared_gram(&self, mut lines: Vec<Line>) -> Result<DMatrix<f64>, PlantError> {
+    pub(crate) fn shared_gram(&self, mut lines: Vec<Column>) -> Result<DMatrix<f64>, PlantError> {
         lines.extend(self.problem.later_starts());
         let (values, sigmas) = self.later();
-        eliminated(self.pass(&lines, Keep::Nothing)?.gram, values, &sigmas)
+        eliminated(self.gram(&lines)?, values, &sigmas)
     }
 
     /// Value of an unknown of another extension in this fit.

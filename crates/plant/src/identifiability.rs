@@ -8,6 +8,7 @@
 
 use std::sync::Arc;
 
+use crate::dynamics::reduce;
 use gyrocal_answer::{NullDirection, NullPart};
 use gyrocal_hypothesis::ModelExtension;
 use gyrocal_statistics::deviates::Draw;
@@ -16,7 +17,6 @@ use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use crate::error::PlantError;
 use crate::fitted::FittedPlant;
-use crate::pass::{Keep, reduce};
 use crate::problem::Problem;
 use crate::record::PlantRecord;
 use crate::solve::Solver;
@@ -56,7 +56,7 @@ impl FittedPlant {
         let mut lines = self.lines();
         lines.truncate(self.problem.nominal());
         lines.extend(self.problem.later_starts());
-        let gram = self.pass(&lines, Keep::Nothing)?.gram;
+        let gram = self.gram(&lines)?;
         let information = gram.view((1, 1), (lines.len(), lines.len())).into_owned();
         let scales = scales(&information);
         let null = null_space(&scaled(&information, &scales));
@@ -152,7 +152,7 @@ impl FittedPlant {
                 .collect(),
         };
         let problem = Problem::new(&here.plant, Arc::new(record), here.substeps);
-        let noise = problem.variances(&self.ratios);
+        let noise = problem.noise(&self.ratios);
         let solver = Solver::new(&problem, &ModelExtension::default(), noise);
         let mut values = self.solution.at.values[..problem.nominal()].to_vec();
         for (index, state) in description.states.iter().enumerate() {
@@ -166,7 +166,7 @@ impl FittedPlant {
             return Ok(None);
         }
         let lin = dynamics.linearise(&course, &points)?;
-        let reduced = reduce(&lin, &solver.noise, &solver.lines, Keep::Nothing);
+        let reduced = reduce(&lin.pass(&solver.noise, &solver.lines)).ok();
         let count = solver.lines.len();
         Ok(reduced.map(|reduced| reduced.gram.view((1, 1), (count, count)).into_owned()))
     }

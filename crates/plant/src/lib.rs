@@ -39,7 +39,6 @@
 //! It draws nothing, and has no random walks. Play and delays are those of inputs.
 
 mod answer;
-mod backward;
 mod catalogue;
 mod columns;
 mod cross_validation;
@@ -60,7 +59,6 @@ mod lines;
 mod loaded;
 mod next_run;
 mod noise;
-mod pass;
 mod prediction;
 mod problem;
 mod record;

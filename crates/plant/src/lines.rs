@@ -1,4 +1,4 @@
-//! Columns of a linearised model, and what their amplitudes do to its parameters.
+//! Columns of a linearised plant, and what their amplitudes do to its parameters.
 
 use std::sync::Arc;
 
@@ -8,56 +8,41 @@ use crate::catalogue::Modulation;
 use crate::loaded::LoadedPlant;
 use crate::record::PlantRecord;
 
-/// One column.
-#[derive(Clone, Debug)]
-pub(crate) enum Line {
-    /// The initial value of a state.
-    Start(usize),
-    /// A parameter of the model.
-    Parameter(usize),
-    /// A parameter times a number for each step.
-    Profile(usize, Arc<[f64]>),
-    /// A sudden change of a state in the step after a row.
-    Jump(usize, usize),
-    /// A change of an output at each row.
-    Output(usize, Arc<[f64]>),
+/// The parameters that some columns change, in rising order.
+pub(crate) fn parameters_of(lines: &[Column]) -> Vec<usize> {
+    let mut all: Vec<usize> = lines.iter().filter_map(Column::parameter).collect();
+    all.sort_unstable();
+    all.dedup();
+    all
 }
 
-impl Line {
-    /// The parameter that it changes.
-    pub(crate) fn parameter(&self) -> Option<usize> {
-        match self {
-            Self::Parameter(index) | Self::Profile(index, _) => Some(*index),
-            Self::Start(_) | Self::Jump(..) | Self::Output(..) => None,
-        }
-    }
+/// The initial value of a state.
+pub(crate) fn initial(state: usize) -> Column {
+    Column::InitialState { row: 0, state }
+}
 
-    /// The parameters that some lines change.
-    pub(crate) fn parameters(lines: &[Self]) -> Vec<usize> {
-        let mut all: Vec<usize> = lines.iter().filter_map(Self::parameter).collect();
-        all.sort_unstable();
-        all.dedup();
-        all
-    }
-
-    /// A column of the search.
-    pub(crate) fn of(column: &Column, states: usize, steps: usize, starts: &[usize]) -> Self {
-        match column {
-            Column::InitialState { state, .. } => Self::Start(*state),
-            Column::StateJump { row, state } => Self::Jump(*row, *state),
-            Column::Step { parameter, row } => {
-                // A change belongs to the record that it happens in.
-                let end = starts.iter().find(|start| *start > row).copied();
-                let end = end.unwrap_or(steps);
-                let profile =
-                    (0..steps).map(|step| f64::from(u8::from((*row..end).contains(&step))));
-                Self::Profile(parameter - states, profile.collect())
+/// A column of the search, whose parameters begin with the initial states, as one of the model.
+pub(crate) fn of_search(column: &Column, states: usize, steps: usize, starts: &[usize]) -> Column {
+    match column {
+        Column::InitialState { state, .. } => initial(*state),
+        Column::StateJump { .. } | Column::Output { .. } => column.clone(),
+        Column::Parameter { parameter } => Column::Parameter {
+            parameter: parameter - states,
+        },
+        Column::Step { parameter, row } => {
+            // A change belongs to the record that it happens in.
+            let end = starts.iter().find(|start| *start > row).copied();
+            let end = end.unwrap_or(steps);
+            let profile = (0..steps).map(|step| f64::from(u8::from((*row..end).contains(&step))));
+            Column::TimeProfile {
+                parameter: parameter - states,
+                steps: profile.collect(),
             }
-            Column::TimeProfile { parameter, steps } => {
-                Self::Profile(parameter - states, Arc::clone(steps))
-            }
-            Column::Output { output, change } => Self::Output(*output, Arc::clone(change)),
         }
+        Column::TimeProfile { parameter, steps } => Column::TimeProfile {
+            parameter: parameter - states,
+            steps: Arc::clone(steps),
+        },
     }
 }
 
@@ -67,25 +52,27 @@ pub(crate) fn of_parameters(
     (record, rows): (&PlantRecord, &Rows),
     extension: &ModelExtension,
     wanted: &[usize],
-) -> Vec<Line> {
+) -> Vec<Column> {
     let tables = plant.tables();
     let states = plant.description.states.len();
     let sizes = plant.functions.sizes().parameters;
     let shapes = extension.all_shapes(tables);
     let line = |index: &usize| {
         let Some(parameter) = index.checked_sub(states) else {
-            return Line::Start(*index);
+            return initial(*index);
         };
         let Some(own) = parameter.checked_sub(sizes) else {
-            return Line::Parameter(parameter);
+            return Column::Parameter { parameter };
         };
         let modulated = plant.catalogue.modulated[own];
         match (modulated.course, modulated.output) {
             (Modulation::Weight(weight), Some(output)) => {
-                Line::Output(output, rows.row_weights(tables, weight, &shapes))
+                let change = rows.row_weights(tables, weight, &shapes);
+                Column::Output { output, change }
             }
             (Modulation::Weight(weight), None) => {
-                Line::Profile(modulated.of, rows.step_weights(tables, weight, &shapes))
+                let steps = rows.step_weights(tables, weight, &shapes);
+                profile(modulated.of, steps)
             }
             (Modulation::Error(error, input), _) => {
                 let inputs = &plant.description.inputs;
@@ -93,11 +80,16 @@ pub(crate) fn of_parameters(
                 let steps = in_each(record, |part| {
                     error.steps(part, inputs.len(), input, interpolate)
                 });
-                Line::Profile(modulated.of, steps)
+                profile(modulated.of, steps)
             }
         }
     };
     wanted.iter().map(line).collect()
+}
+
+/// A parameter times a number for each step.
+pub(crate) fn profile(parameter: usize, steps: Arc<[f64]>) -> Column {
+    Column::TimeProfile { parameter, steps }
 }
 
 /// Numbers for the steps of each record, and zero between two of them.
@@ -117,8 +109,8 @@ fn in_each(record: &PlantRecord, steps: impl Fn(&PlantRecord) -> Arc<[f64]>) -> 
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Course {
     pub(crate) constant: Vec<f64>,
-    /// Parameter, amplitude, number for each step.
-    profiles: Vec<(usize, f64, Arc<[f64]>)>,
+    /// Parameter, amplitude, the column that has its number for each step.
+    profiles: Vec<(usize, f64, Column)>,
     /// Output, amplitude, number for each row.
     outputs: Vec<(usize, f64, Arc<[f64]>)>,
     /// Step, state, amplitude.
@@ -137,16 +129,16 @@ impl Course {
         }
     }
 
-    /// Adds a line with its amplitude.
-    pub(crate) fn add(&mut self, line: &Line, amplitude: f64) {
+    /// Adds a column with its amplitude.
+    pub(crate) fn add(&mut self, line: &Column, amplitude: f64) {
         match line {
-            Line::Start(_) => {}
-            Line::Parameter(index) => self.constant[*index] += amplitude,
-            Line::Profile(index, steps) => {
-                self.profiles.push((*index, amplitude, Arc::clone(steps)));
+            Column::InitialState { .. } => {}
+            Column::Parameter { parameter } => self.constant[*parameter] += amplitude,
+            Column::TimeProfile { parameter, .. } | Column::Step { parameter, .. } => {
+                self.profiles.push((*parameter, amplitude, line.clone()));
             }
-            Line::Jump(step, state) => self.jumps.push((*step, *state, amplitude)),
-            Line::Output(output, change) => {
+            Column::StateJump { row, state } => self.jumps.push((*row, *state, amplitude)),
+            Column::Output { output, change } => {
                 self.outputs.push((*output, amplitude, Arc::clone(change)));
             }
         }
@@ -161,9 +153,8 @@ impl Course {
     /// Parameters in the step after a row; of the last row those of the step before it.
     pub(crate) fn at(&self, row: usize, parameters: &mut [f64]) {
         parameters.copy_from_slice(&self.constant);
-        for (index, amplitude, steps) in &self.profiles {
-            let value = steps.get(row).or(steps.last()).copied().unwrap_or(0.0);
-            parameters[*index] += amplitude * value;
+        for (index, amplitude, column) in &self.profiles {
+            parameters[*index] += amplitude * column.weight(row);
         }
     }
 

@@ -7,8 +7,10 @@
 
 use std::sync::Arc;
 
+use crate::dynamics::reduce;
 use gyrocal_answer::{AlternativeKind, Coefficients, Finding, NextRun, NextSigma, ToldApart};
 use gyrocal_hypothesis::{CONFIDENCE_SET_DEVIANCE, FittedModel as _};
+use gyrocal_inference::Column;
 use gyrocal_scalar::effect::Effect;
 use gyrocal_statistics::normal_probability;
 use nalgebra::{Cholesky, DMatrix, DVector};
@@ -17,8 +19,7 @@ use crate::diagnosed::Diagnosed;
 use crate::error::PlantError;
 use crate::fitted::FittedPlant;
 use crate::later_starts::eliminated;
-use crate::lines::{Course, Line};
-use crate::pass::{Keep, reduce};
+use crate::lines::{Course, initial, parameters_of};
 use crate::prediction::least_prior;
 use crate::problem::Problem;
 use crate::record::PlantRecord;
@@ -281,35 +282,37 @@ impl FittedPlant {
         for parameter in unknowns {
             let line = self.in_later(*parameter, &run);
             // What another record does not have is a change of nothing.
-            let line = line.unwrap_or_else(|| Line::Output(0, Arc::from([])));
+            let line = line.unwrap_or_else(|| Column::Output {
+                output: 0,
+                change: Arc::from([]),
+            });
             base.add(&line, self.value_of(*parameter));
             lines.push(line);
         }
-        lines.extend((0..states).map(Line::Start));
+        lines.extend((0..states).map(initial));
         let solver = Solver {
             problem: &problem,
             lines: Vec::new(),
             sigmas: Vec::new(),
-            noise: problem.variances(&self.ratios),
-            parameters: Line::parameters(&lines),
+            noise: problem.noise(&self.ratios),
+            parameters: parameters_of(&lines),
             base,
         };
         let mut dynamics = solver.dynamics();
-        let initial = problem.initial(&self.values()[..states]);
-        let points = dynamics.simulate(&solver.base, &initial);
+        let first = problem.initial(&self.values()[..states]);
+        let points = dynamics.simulate(&solver.base, &first);
         if let Some(place) = points.iter().position(|value| !value.is_finite()) {
             return Err(PlantError::NotFinite {
                 row: place / states + 1,
             });
         }
         let mut lin = dynamics.linearise(&solver.base, &points)?;
-        for (residual, output) in lin.residuals.iter_mut().zip(outputs.iter().cycle()) {
+        for (residual, output) in lin.rows.residuals.iter_mut().zip(outputs.iter().cycle()) {
             let simulated = -*residual;
             if output.is_beyond(simulated) {
                 *residual = f64::NAN;
             }
         }
-        let reduced = reduce(&lin, &solver.noise, &lines, Keep::Nothing);
-        Ok(reduced.ok_or(PlantError::Singular)?.gram)
+        Ok(reduce(&lin.pass(&solver.noise, &lines))?.gram)
     }
 }

@@ -1,13 +1,12 @@
 //! Noise at the largest restricted likelihood (Patterson, Thompson, Biometrika 58, 545, 1971): initial
 //! states and nominal parameters integrated out, sizes of effects at their best.
 
+use gyrocal_inference::{Column, Reduced};
 use gyrocal_statistics::math::{exp, ln};
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-use crate::dynamics::Linearised;
+use crate::dynamics::{Linearised, reduce};
 use crate::error::PlantError;
-use crate::lines::Line;
-use crate::pass::{Keep, Reduced, reduce};
 use crate::problem::Problem;
 
 /// Standard deviation of the logarithm of a noise over the declared one before a record.
@@ -43,7 +42,7 @@ pub(crate) struct NoiseFit {
 pub(crate) struct Restricted<'a> {
     pub(crate) problem: &'a Problem,
     pub(crate) lin: &'a Linearised,
-    pub(crate) lines: &'a [Line],
+    pub(crate) lines: &'a [Column],
     pub(crate) sigmas: &'a [f64],
     pub(crate) values: &'a [f64],
     /// Places of unknowns that the model shall not have.
@@ -56,22 +55,21 @@ impl<'a> Restricted<'a> {
     pub(crate) fn new(
         problem: &'a Problem,
         lin: &'a Linearised,
-        (lines, sigmas): (&'a [Line], &'a [f64]),
+        (lines, sigmas): (&'a [Column], &'a [f64]),
         (values, absent): (&'a [f64], &'a [usize]),
     ) -> Result<Self, PlantError> {
         let mut by_output = Vec::new();
         if problem.plant.description.noises.is_empty() {
-            let noise = problem.variances(&vec![1.0; problem.noises()]);
-            let outputs = noise.outputs.len();
+            let noise = problem.noise(&vec![1.0; problem.noises()]);
+            let outputs = lin.rows.layout.outputs;
             for output in 0..outputs {
                 let mut only = lin.clone();
-                for (place, residual) in only.residuals.iter_mut().enumerate() {
+                for (place, residual) in only.rows.residuals.iter_mut().enumerate() {
                     if place % outputs != output {
                         *residual = f64::NAN;
                     }
                 }
-                let reduced = reduce(&only, &noise, lines, Keep::Nothing);
-                by_output.push(reduced.ok_or(PlantError::Singular)?);
+                by_output.push(reduce(&only.pass(&noise, lines))?);
             }
         }
         Ok(Self {
@@ -168,7 +166,7 @@ impl<'a> Restricted<'a> {
     /// Logarithm of the likelihood at logarithms of ratios.
     fn value(&self, logarithms: &DVector<f64>) -> Result<f64, PlantError> {
         let ratios: Vec<f64> = logarithms.iter().map(|one| exp(*one)).collect();
-        let (gram, log_variance) = self.gram(&ratios).ok_or(PlantError::Singular)?;
+        let (gram, log_variance) = self.gram(&ratios)?;
         let count = self.values.len();
         let mut solution = DVector::zeros(count + 1);
         solution[0] = 1.0;
@@ -210,19 +208,19 @@ impl<'a> Restricted<'a> {
     }
 
     /// Gram matrix, and the sum of the logarithms of the variances of the innovations.
-    fn gram(&self, ratios: &[f64]) -> Option<(DMatrix<f64>, f64)> {
-        let noise = self.problem.variances(ratios);
+    fn gram(&self, ratios: &[f64]) -> Result<(DMatrix<f64>, f64), PlantError> {
         if self.by_output.is_empty() {
-            let reduced = reduce(self.lin, &noise, self.lines, Keep::Nothing)?;
-            return Some((reduced.gram, reduced.log_variance));
+            let noise = self.problem.noise(ratios);
+            let reduced = reduce(&self.lin.pass(&noise, self.lines))?;
+            return Ok((reduced.gram, reduced.log_variance));
         }
         let size = self.lines.len() + 1;
         let (mut gram, mut log_variance) = (DMatrix::zeros(size, size), 0.0);
-        for ((own, ratio), variance) in self.by_output.iter().zip(ratios).zip(&noise.outputs) {
+        for (own, ratio) in self.by_output.iter().zip(ratios) {
             gram += &own.gram / (ratio * ratio);
-            log_variance += own.values as f64 * ln(*variance);
+            log_variance += own.log_variance + 2.0 * own.values as f64 * ln(*ratio);
         }
-        Some((gram, log_variance))
+        Ok((gram, log_variance))
     }
 }
 

@@ -6,18 +6,18 @@ use std::sync::Arc;
 
 use gyrocal_answer::OutputError;
 use gyrocal_hypothesis::FittedModel as _;
+use gyrocal_inference::Column;
 use gyrocal_statistics::math::ln;
 use gyrocal_statistics::rms_of_present;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 use crate::catalogue::Modulation;
 use crate::description::{Kind, State};
-use crate::dynamics::Dynamics;
+use crate::dynamics::{Dynamics, reduce};
 use crate::error::PlantError;
 use crate::fitted::FittedPlant;
-use crate::lines::{Course, Line, of_parameters};
+use crate::lines::{Course, initial, of_parameters, parameters_of, profile};
 use crate::loaded::LoadedPlant;
-use crate::pass::{Keep, reduce};
 use crate::problem::Problem;
 use crate::record::PlantRecord;
 use crate::solve::{Iterate, Solver};
@@ -99,7 +99,7 @@ impl FittedPlant {
         let solver = Solver::new(
             &self.problem,
             self.extension(),
-            self.problem.variances(&self.ratios),
+            self.problem.noise(&self.ratios),
         );
         let course = solver.course(&self.solution.at.values);
         simulated(&self.problem, &course, self.points())
@@ -107,7 +107,7 @@ impl FittedPlant {
 
     /// The lines of effects and parameters in a later record, with their values, and the rows of this
     /// fit's covariance that they have.
-    fn carried(&self, later: &PlantRecord) -> Vec<(Line, usize)> {
+    fn carried(&self, later: &PlantRecord) -> Vec<(Column, usize)> {
         let plant = &self.problem.plant;
         let states = plant.description.states.len();
         let nominal = states..self.problem.nominal();
@@ -121,24 +121,24 @@ impl FittedPlant {
 
     /// What a parameter of the model, by its index in the table of the plant, is in a later record; `None` of an
     /// initial state.
-    pub(crate) fn in_later(&self, parameter: usize, later: &PlantRecord) -> Option<Line> {
+    pub(crate) fn in_later(&self, parameter: usize, later: &PlantRecord) -> Option<Column> {
         let plant = &self.problem.plant;
         let parameter = parameter.checked_sub(plant.description.states.len())?;
         match parameter.checked_sub(plant.functions.sizes().parameters) {
-            None => Some(Line::Parameter(parameter)),
+            None => Some(Column::Parameter { parameter }),
             Some(modulated) => self.later_line(modulated, later),
         }
     }
 
     /// What a function of time is in a later record: a step stays, a drift stays where it was, and a
     /// regressor goes on.
-    fn later_line(&self, modulated: usize, later: &PlantRecord) -> Option<Line> {
+    fn later_line(&self, modulated: usize, later: &PlantRecord) -> Option<Column> {
         let plant = &self.problem.plant;
         let own = plant.catalogue.modulated[modulated];
         if let Modulation::Error(error, input) = own.course {
             let inputs = &plant.description.inputs;
             let steps = error.steps(later, inputs.len(), input, inputs[input].interpolate);
-            return Some(Line::Profile(own.of, steps));
+            return Some(profile(own.of, steps));
         }
         let effects = plant.description.effects.iter();
         let mut of_time = effects.filter(|effect| effect.kind != Kind::Term);
@@ -176,8 +176,11 @@ impl FittedPlant {
             _ => vec![1.0; rows],
         };
         Some(match own.output {
-            Some(output) => Line::Output(output, steps.into()),
-            None => Line::Profile(own.of, steps.into()),
+            Some(output) => Column::Output {
+                output,
+                change: steps.into(),
+            },
+            None => profile(own.of, steps.into()),
         })
     }
 
@@ -195,7 +198,7 @@ impl FittedPlant {
             &[parameters],
         );
         lines.iter().any(|line| match line {
-            Line::Profile(_, steps) | Line::Output(_, steps) => {
+            Column::TimeProfile { steps, .. } | Column::Output { change: steps, .. } => {
                 steps.last().is_some_and(|last| *last != 0.0)
             }
             _ => false,
@@ -215,11 +218,9 @@ impl FittedPlant {
         for (line, place) in &carried {
             base.add(line, self.values()[*place]);
         }
-        let starts: Vec<Line> = (0..n).map(Line::Start).collect();
-        let mut parameters: Vec<usize> =
-            carried.iter().filter_map(|one| one.0.parameter()).collect();
-        parameters.sort_unstable();
-        parameters.dedup();
+        let starts: Vec<Column> = (0..n).map(initial).collect();
+        let carried_lines = carried.iter().map(|(line, _)| line.clone());
+        let lines: Vec<Column> = starts.iter().cloned().chain(carried_lines).collect();
         let sigmas: Vec<f64> = problem.prior_sigma[..n]
             .iter()
             .zip(&plant.description.states)
@@ -227,21 +228,16 @@ impl FittedPlant {
             .collect();
         let solver = Solver {
             problem: &problem,
-            lines: starts.clone(),
+            lines: starts,
             sigmas: sigmas.clone(),
-            noise: problem.variances(&self.ratios),
+            noise: problem.noise(&self.ratios),
             base,
-            parameters,
+            parameters: parameters_of(&lines),
         };
         let solution = led_by(&solver, &self.state_sizes())?;
         let course = solver.course(&solution.at.values);
         let simulated = simulated(&problem, &course, &solution.at.points);
-        let lines: Vec<Line> = starts
-            .into_iter()
-            .chain(carried.iter().map(|(line, _)| line.clone()))
-            .collect();
-        let reduced = reduce(&solution.lin, &solver.noise, &lines, Keep::Nothing)
-            .ok_or(PlantError::Singular)?;
+        let reduced = reduce(&solution.lin.pass(&solver.noise, &lines))?;
         let places: Vec<usize> = carried.iter().map(|(_, place)| *place).collect();
         let log_density = self
             .log_density(&reduced.gram, &solution.at, &sigmas, &places)

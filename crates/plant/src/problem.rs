@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use gyrocal_hypothesis::{ModelExtension, Rows};
+use gyrocal_hypothesis::{Column, ModelExtension, Rows};
 
-use crate::lines::{Line, of_parameters};
+use crate::dynamics::FittedNoise;
+use crate::lines::{of_parameters, of_search};
 use crate::loaded::LoadedPlant;
-use crate::pass::Variances;
 use crate::record::PlantRecord;
 
 /// A plant and a record.
@@ -53,7 +53,7 @@ impl Problem {
     }
 
     /// The unknowns of a model as columns.
-    pub(crate) fn lines(&self, extension: &ModelExtension) -> Vec<Line> {
+    pub(crate) fn lines(&self, extension: &ModelExtension) -> Vec<Column> {
         let own = extension.parameters.iter().map(|(parameter, _)| *parameter);
         let wanted: Vec<usize> = (0..self.nominal()).chain(own).collect();
         let mut lines = of_parameters(&self.plant, (&self.record, &self.rows), extension, &wanted);
@@ -63,10 +63,15 @@ impl Problem {
     }
 
     /// Initial states of the records after the first: changes of the declared ones in the step to each.
-    pub(crate) fn later_starts(&self) -> impl Iterator<Item = Line> + '_ {
+    pub(crate) fn later_starts(&self) -> impl Iterator<Item = Column> + '_ {
         let states = self.plant.description.states.len();
         let starts = self.record.starts.iter();
-        starts.flat_map(move |row| (0..states).map(move |state| Line::Jump(row - 1, state)))
+        starts.flat_map(move |row| {
+            (0..states).map(move |state| Column::StateJump {
+                row: row - 1,
+                state,
+            })
+        })
     }
 
     /// Number of these.
@@ -75,11 +80,11 @@ impl Problem {
     }
 
     /// The further columns of an extension.
-    pub(crate) fn columns(&self, extension: &ModelExtension) -> Vec<Line> {
+    pub(crate) fn columns(&self, extension: &ModelExtension) -> Vec<Column> {
         let (states, steps) = self.shape();
         let columns = extension.columns.columns().iter();
         columns
-            .map(|column| Line::of(column, states, steps, &self.record.starts))
+            .map(|column| of_search(column, states, steps, &self.record.starts))
             .collect()
     }
 
@@ -114,20 +119,11 @@ impl Problem {
         pairs.map(|(state, value)| state.initial + value).collect()
     }
 
-    /// Variances of the noise at ratios to the declared standard deviations: outputs, then noises.
-    pub(crate) fn variances(&self, ratios: &[f64]) -> Variances {
-        let description = &self.plant.description;
-        let (outputs, inputs) = ratios.split_at(description.outputs.len());
-        let outputs = description.outputs.iter().zip(outputs);
-        let inputs = description.noises.iter().zip(inputs);
-        Variances {
-            outputs: outputs
-                .map(|(one, ratio)| (one.sigma * ratio).powi(2))
-                .collect(),
-            inputs: inputs
-                .map(|(one, ratio)| (one.density * ratio).powi(2))
-                .collect(),
-            loose: None,
+    /// FittedNoise of these standard deviations over the declared ones: outputs, then noises.
+    pub(crate) fn noise(&self, ratios: &[f64]) -> FittedNoise {
+        FittedNoise {
+            factors: ratios.iter().map(|ratio| ratio * ratio).collect(),
+            loose: Vec::new(),
         }
     }
 

@@ -6,14 +6,13 @@
 
 use std::sync::OnceLock;
 
-use gyrocal_hypothesis::ModelExtension;
+use gyrocal_hypothesis::{Column, ModelExtension};
+use gyrocal_inference::Pass;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-use crate::backward::smooth;
-use crate::dynamics::{Dynamics, Linearised};
+use crate::dynamics::{Dynamics, FittedNoise, Linearised, reduce};
 use crate::error::PlantError;
-use crate::lines::{Course, Line};
-use crate::pass::{Keep, Reduced, Variances, reduce};
+use crate::lines::{Course, parameters_of};
 use crate::problem::Problem;
 
 /// Most Gauss-Newton steps.
@@ -63,9 +62,9 @@ pub(crate) struct Solution {
 /// A model to be fitted.
 pub(crate) struct Solver<'a> {
     pub(crate) problem: &'a Problem,
-    pub(crate) lines: Vec<Line>,
+    pub(crate) lines: Vec<Column>,
     pub(crate) sigmas: Vec<f64>,
-    pub(crate) noise: Variances,
+    pub(crate) noise: FittedNoise,
     /// Parameters that the unknowns are added to.
     pub(crate) base: Course,
     /// Parameters that derivatives are taken by: those of the lines, in their order.
@@ -83,11 +82,15 @@ struct Step {
 }
 
 impl<'a> Solver<'a> {
-    pub(crate) fn new(problem: &'a Problem, extension: &ModelExtension, noise: Variances) -> Self {
+    pub(crate) fn new(
+        problem: &'a Problem,
+        extension: &ModelExtension,
+        noise: FittedNoise,
+    ) -> Self {
         let lines = problem.lines(extension);
         Self {
             problem,
-            parameters: Line::parameters(&lines),
+            parameters: parameters_of(&lines),
             lines,
             sigmas: problem.sigmas(extension),
             noise,
@@ -125,12 +128,10 @@ impl<'a> Solver<'a> {
         for index in 0..=MAX_STEPS {
             let course = self.course(&at.values);
             let lin = dynamics.linearise(&course, &at.points)?;
-            let reduced =
-                reduce(&lin, &self.noise, &self.lines, Keep::All).ok_or(PlantError::Singular)?;
-            let step = self.step(&lin, &reduced, &at.values)?;
+            let step = self.step(&lin.pass(&self.noise, &self.lines), &at.values)?;
             let now = self.merit(
-                &lin.defects,
-                &lin.residuals,
+                &lin.rows.defects,
+                &lin.rows.residuals,
                 &lin,
                 &at.values,
                 &step.penalties,
@@ -163,12 +164,8 @@ impl<'a> Solver<'a> {
         Err(no_fit("the steps do not end"))
     }
 
-    fn step(
-        &self,
-        lin: &Linearised,
-        reduced: &Reduced,
-        values: &[f64],
-    ) -> Result<Step, PlantError> {
+    fn step(&self, pass: &Pass<'_>, values: &[f64]) -> Result<Step, PlantError> {
+        let reduced = reduce(pass)?;
         let count = values.len();
         let mut information = reduced.gram.view((1, 1), (count, count)).into_owned();
         let mut gradient = DVector::from_fn(count, |i, _| -reduced.gram[(0, i + 1)]);
@@ -181,7 +178,9 @@ impl<'a> Solver<'a> {
         }
         let cholesky = Cholesky::new(information).ok_or(PlantError::Singular)?;
         let change = cholesky.solve(&gradient);
-        let smoothed = smooth(lin, &reduced.kept, change.as_slice()).ok_or(PlantError::Singular)?;
+        let smoothed = pass
+            .smooth(change.as_slice())
+            .map_err(|_| PlantError::Singular)?;
         Ok(Step {
             promised: cost - change.dot(&gradient),
             covariance: cholesky.inverse(),
@@ -204,7 +203,7 @@ impl<'a> Solver<'a> {
         step: &Step,
         now: f64,
     ) -> Option<Iterate> {
-        let is_free = self.noise.inputs.is_empty() && self.noise.loose.is_none();
+        let is_free = lin.rows.layout.noises == 0 && self.noise.loose.is_empty();
         let mut share = 1.0;
         for _ in 0..MAX_HALVINGS {
             let moved = |(old, change): (&f64, &f64)| old + share * change;
@@ -249,13 +248,12 @@ impl<'a> Solver<'a> {
         values: &[f64],
         penalties: &[f64],
     ) -> f64 {
-        let y = self.noise.outputs.len();
-        let outputs = residuals.chunks_exact(y).flat_map(|row| {
-            let pairs = row.iter().zip(&self.noise.outputs);
-            pairs.filter(|(residual, _)| !residual.is_nan())
-        });
+        let factors = &self.noise.factors[..lin.rows.layout.outputs];
+        let declared = residuals.iter().zip(&lin.rows.variances);
+        let outputs = declared.zip(factors.iter().cycle());
         let mut cost: f64 = outputs
-            .map(|(residual, variance)| residual * residual / variance)
+            .filter(|((residual, _), _)| !residual.is_nan())
+            .map(|((residual, variance), factor)| residual * residual / (variance * factor))
             .sum();
         // A missing output is NaN in the record; a model that leaves the numbers is caught by its states.
         if !defects.iter().all(|defect| defect.is_finite()) {
@@ -282,14 +280,16 @@ impl<'a> Solver<'a> {
 
     /// The cost of the noise that explains a defect best, and what it leaves.
     fn explained(&self, lin: &Linearised, row: usize, defect: &[f64]) -> (f64, Vec<f64>) {
-        let (n, w) = (defect.len(), self.noise.inputs.len());
+        let (n, w) = (defect.len(), lin.rows.layout.noises);
+        let factors = &self.noise.factors[lin.rows.layout.outputs..];
         let by_noises = DMatrix::from_row_slice(n, w, &lin.by_noises[row * n * w..][..n * w]);
         let defect = DVector::from_row_slice(defect);
-        if let Some(loose) = &self.noise.loose {
-            let mut covariance = DMatrix::from_diagonal(&DVector::from_row_slice(loose));
+        if !self.noise.loose.is_empty() {
+            let loose = DVector::from_row_slice(&self.noise.loose);
+            let mut covariance = DMatrix::from_diagonal(&loose);
             for k in 0..w {
                 let own = by_noises.column(k);
-                covariance.ger(self.noise.inputs[k] / lin.step_s[row], &own, &own, 1.0);
+                covariance.ger(factors[k], &own, &own, 1.0);
             }
             let cost = Cholesky::new(covariance).map_or(f64::INFINITY, |cholesky| {
                 cholesky.solve(&defect).dot(&defect)
@@ -306,8 +306,8 @@ impl<'a> Solver<'a> {
         let noise = cholesky.solve(&by_noises.tr_mul(&defect));
         let cost = noise
             .iter()
-            .zip(&self.noise.inputs)
-            .map(|(noise, density)| noise * noise * lin.step_s[row] / density)
+            .zip(factors)
+            .map(|(noise, factor)| noise * noise / factor)
             .sum();
         let left = defect - by_noises * noise;
         (cost, left.as_slice().to_vec())

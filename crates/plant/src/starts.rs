@@ -10,10 +10,9 @@ use gyrocal_hypothesis::ModelExtension;
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_statistics::math::exp;
 
-use crate::dynamics::Dynamics;
+use crate::dynamics::{Dynamics, FittedNoise};
 use crate::error::PlantError;
 use crate::lines::Course;
-use crate::pass::Variances;
 use crate::problem::Problem;
 use crate::solve::{Iterate, Solution, Solver};
 
@@ -111,7 +110,7 @@ fn words(error: PlantError) -> String {
 /// From a simulation.
 fn simulated(problem: &Problem, ratios: &[f64], values: &[f64]) -> Result<Solution, PlantError> {
     let extension = ModelExtension::default();
-    let solver = Solver::new(problem, &extension, problem.variances(ratios));
+    let solver = Solver::new(problem, &extension, problem.noise(ratios));
     let course = solver.course(values);
     let mut dynamics = solver.dynamics();
     let points = dynamics.simulate(&course, &problem.initial(values));
@@ -133,9 +132,9 @@ fn led(problem: &Problem, ratios: &[f64], values: &[f64]) -> Result<Solution, Pl
         values: values.to_vec(),
     };
     for level in LEVELS {
-        let mut solver = Solver::new(problem, &extension, problem.variances(ratios));
+        let mut solver = Solver::new(problem, &extension, problem.noise(ratios));
         let loose = sizes.iter().map(|size| (level * size).powi(2));
-        solver.noise.loose = Some(loose.collect());
+        solver.noise.loose = loose.collect();
         let parameters = problem.plant.description.parameters.iter();
         let states = sizes.len();
         for (sigma, own) in solver.sigmas[states..].iter_mut().zip(parameters) {
@@ -151,7 +150,7 @@ fn led(problem: &Problem, ratios: &[f64], values: &[f64]) -> Result<Solution, Pl
             at = solution.at;
         }
     }
-    let solver = Solver::new(problem, &extension, problem.variances(ratios));
+    let solver = Solver::new(problem, &extension, problem.noise(ratios));
     let own = solver.solve(at.clone());
     // A trajectory that was led may be better as a simulation.
     own.or_else(|_| simulated(problem, ratios, &at.values))
@@ -173,8 +172,8 @@ pub(crate) fn led_by(solver: &Solver<'_>, sizes: &[f64]) -> Result<Solution, Pla
             sigmas: solver.sigmas.clone(),
             base: solver.base.clone(),
             parameters: solver.parameters.clone(),
-            noise: Variances {
-                loose: Some(loose),
+            noise: FittedNoise {
+                loose,
                 ..solver.noise.clone()
             },
         };
@@ -202,7 +201,7 @@ fn state_sizes(problem: &Problem, values: &[f64]) -> Vec<f64> {
     let solver = Solver::new(
         problem,
         &ModelExtension::default(),
-        problem.variances(&vec![1.0; problem.noises()]),
+        problem.noise(&vec![1.0; problem.noises()]),
     );
     let course = solver.course(values);
     let mut dynamics = solver.dynamics();
@@ -250,7 +249,7 @@ fn sensitive_substeps(problem: &Problem, course: &Course, initial: &[f64]) -> us
         let mut dynamics = Dynamics::new(&problem.plant, &problem.record, substeps);
         let points = dynamics.simulate(course, initial);
         let lin = dynamics.linearise(course, &points).ok()?;
-        Some(lin.by_parameters)
+        Some(lin.rows.by_parameters)
     };
     let sizes = problem.plant.functions.sizes();
     let mut count = 1;
@@ -281,7 +280,7 @@ fn sensitive_substeps(problem: &Problem, course: &Course, initial: &[f64]) -> us
 
 /// Runge-Kutta steps between rows that resolve a simulation with these values.
 pub(crate) fn substeps(problem: &Problem, values: &[f64]) -> usize {
-    let noise = problem.variances(&vec![1.0; problem.noises()]);
+    let noise = problem.noise(&vec![1.0; problem.noises()]);
     let solver = Solver::new(problem, &ModelExtension::default(), noise);
     let course = solver.course(values);
     let initial = problem.initial(values);

@@ -1,7 +1,7 @@
 //! Marginal likelihood of parts of a record.
 
-use gyrocal::estimation::batch::Linearisation;
 use gyrocal_hypothesis::RateNoise;
+use gyrocal_inference::Pass;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 use super::{AXES, FittedPlatform};
@@ -51,9 +51,12 @@ impl FittedPlatform<'_> {
             let own = within(left_out.start)..within(left_out.end);
             let reduced = self
                 .problem
-                .without_rows(run, &parameters, own, |pass| {
-                    let tape = self.solution.tapes[run].as_deref();
-                    Linearisation { tape, ..*pass }.reduce(|_| ())
+                .with_run(run, &parameters, |pass| {
+                    Pass {
+                        left_out: &own,
+                        ..pass.on(self.kept(run))
+                    }
+                    .reduce(|_| ())
                 })
                 .map_err(|error| CalibrationError::pass(run, error))?;
             let columns = self.problem.runs[run].column_unknowns();
@@ -94,12 +97,11 @@ impl FittedPlatform<'_> {
             let score = self
                 .problem
                 .with_first_rows(run, &parameters, count, |pass| {
-                    let tape = self.solution.tapes[run].as_deref();
-                    Linearisation { tape, ..*pass }.noise_score_of_columns(
-                        &factors,
-                        usize::MAX,
-                        &[],
-                    )
+                    Pass {
+                        factors: &factors,
+                        ..pass.on(self.kept(run))
+                    }
+                    .noise_score_of_columns(usize::MAX, &[])
                 })
                 .map_err(|error| CalibrationError::pass(run, error))?;
             let columns = self.problem.runs[run].column_unknowns();

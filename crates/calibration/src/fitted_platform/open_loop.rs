@@ -1,8 +1,8 @@
 //! What is expected of an open-loop simulation of a right model: noise, and sensitivity to the site.
 
-use gyrocal::estimation::batch::Linearisation;
 use gyrocal::generated::catalogue;
 use gyrocal::trajectory::{Orientation, turned};
+use gyrocal_inference::Trajectory;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 use super::{AXES, FittedPlatform, S_PER_H};
@@ -170,12 +170,14 @@ impl FittedPlatform<'_> {
         points: &[Orientation],
         parameters: &[f64],
     ) -> Result<Vec<[f64; 3]>, CalibrationError> {
-        let points = self
-            .problem
-            .with_run(0, parameters, |pass| {
-                Linearisation { points, ..*pass }.free_run()
-            })
-            .map_err(|error| CalibrationError::pass(0, error))?;
+        let further = &self.problem.runs[0].further;
+        let trajectory = self.problem.trajectory(0, parameters, &[], further);
+        let points = Trajectory {
+            points,
+            ..trajectory
+        }
+        .free_run()
+        .map_err(|error| CalibrationError::pass(0, error))?;
         Ok(self.problem.outputs(0, &points, parameters))
     }
 

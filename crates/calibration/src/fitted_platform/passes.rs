@@ -1,9 +1,9 @@
 //! Passes over a record with a fitted model: what signatures, sudden changes and noise would say.
 
 use gyrocal::effect::Need;
-use gyrocal::estimation::batch::{Linearisation, NoiseScore, Reduced, Tape, Whitened};
 use gyrocal::{Catalogue, EFFECTS, Effect, EstimationError};
 use gyrocal_hypothesis::{Column, ExtraColumns, StateJump};
+use gyrocal_inference::{KeptRecord, NoiseScore, Pass, Reduced, Whitened};
 use nalgebra::{DMatrix, DVector};
 
 use super::FittedPlatform;
@@ -14,6 +14,11 @@ use crate::noise;
 use gyrocal_record::NoiseEstimate;
 
 impl FittedPlatform<'_> {
+    /// A record linearised about the fit, if it was short enough to be kept.
+    pub(super) fn kept(&self, run: usize) -> Option<&KeptRecord> {
+        self.solution.kept[run].as_deref()
+    }
+
     /// Whitened innovations of the fit, row by row; NaN where there is no value.
     ///
     /// # Errors
@@ -25,9 +30,9 @@ impl FittedPlatform<'_> {
             let own = &mut whitened[rows];
             self.problem
                 .with_run(run, &parameters, |pass| {
-                    let tape = self.solution.tapes[run].as_deref();
-                    Linearisation { tape, ..*pass }
-                        .reduce(|value| own[value.row][value.output] = value.columns[0])
+                    let keep =
+                        |value: &Whitened<'_>| own[value.row][value.output] = value.columns[0];
+                    pass.on(self.kept(run)).reduce(keep)
                 })
                 .map_err(|error| CalibrationError::pass(run, error))?;
         }
@@ -59,8 +64,7 @@ impl FittedPlatform<'_> {
         let unknowns = self.problem.runs[run].column_unknowns();
         self.problem
             .with_run(run, &parameters, |pass| {
-                let tape = self.solution.tapes[run].as_deref();
-                Linearisation { tape, ..*pass }.jumps(|row, found| {
+                pass.on(self.kept(run)).jumps(|row, found| {
                     let mut cross = DMatrix::zeros(count, 3);
                     for (unknowns, column) in unknowns.iter().zip(&found.columns[1..]) {
                         for unknown in *unknowns {
@@ -74,7 +78,7 @@ impl FittedPlatform<'_> {
                         // Columns are derivatives of the innovations: those of a jump too.
                         score: DVector::from_row_slice(&found.columns[0]),
                         information: DMatrix::from_fn(3, 3, |i, j| {
-                            found.information[i][j] - cross.column(i).dot(&projected.column(j))
+                            found.information[3 * i + j] - cross.column(i).dot(&projected.column(j))
                         }),
                         outputs: DVector::from_fn(3, |output, _| found.readings[output]),
                     });
@@ -94,7 +98,7 @@ impl FittedPlatform<'_> {
         &self,
         further: &[Column],
         mut watch: impl FnMut(&Whitened<'_>),
-    ) -> Result<Reduced<3>, CalibrationError> {
+    ) -> Result<Reduced, CalibrationError> {
         let all: Vec<usize> = (0..Catalogue::PARAMETERS).collect();
         self.signatures_of(&all, further, &mut watch)
     }
@@ -131,8 +135,8 @@ impl FittedPlatform<'_> {
         active: &[usize],
         further: &[Column],
         watch: &mut dyn FnMut(&Whitened<'_>),
-    ) -> Result<Reduced<3>, CalibrationError> {
-        let mut total: Option<Reduced<3>> = None;
+    ) -> Result<Reduced, CalibrationError> {
+        let mut total: Option<Reduced> = None;
         for run in 0..self.records() {
             let mut own = self.reduced(run, active, None, further, watch)?;
             own.gram = self.without_offsets(own.gram, run)?;
@@ -170,8 +174,8 @@ impl FittedPlatform<'_> {
     ///
     /// # Errors
     /// [`CalibrationError::Pass`].
-    pub fn conditional(&self, further: &[Column]) -> Result<Reduced<3>, CalibrationError> {
-        let mut total: Option<Reduced<3>> = None;
+    pub fn conditional(&self, further: &[Column]) -> Result<Reduced, CalibrationError> {
+        let mut total: Option<Reduced> = None;
         for run in 0..self.records() {
             add(&mut total, self.conditional_in(run, further)?);
         }
@@ -186,7 +190,7 @@ impl FittedPlatform<'_> {
         &self,
         run: usize,
         further: &[Column],
-    ) -> Result<Reduced<3>, CalibrationError> {
+    ) -> Result<Reduced, CalibrationError> {
         let own: Vec<usize> = (0..PARAMETERS)
             .chain(self.extension.parameters.iter().map(|(place, _)| *place))
             .collect();
@@ -194,8 +198,7 @@ impl FittedPlatform<'_> {
         let mut active = own.clone();
         active.sort_unstable();
         active.dedup();
-        let tape = self.solution.tapes[run].as_deref();
-        let mut reduced = self.reduced(run, &active, tape, further, &mut |_| ())?;
+        let mut reduced = self.reduced(run, &active, self.kept(run), further, &mut |_| ())?;
         let first = active.len() + 1;
         let columns: Vec<usize> = core::iter::once(0)
             .chain(
@@ -213,10 +216,10 @@ impl FittedPlatform<'_> {
         &self,
         run: usize,
         active: &[usize],
-        tape: Option<&Tape<3>>,
+        kept: Option<&KeptRecord>,
         further: &[Column],
         watch: &mut dyn FnMut(&Whitened<'_>),
-    ) -> Result<Reduced<3>, CalibrationError> {
+    ) -> Result<Reduced, CalibrationError> {
         let leg = &self.problem.runs[run];
         let own = self.extension.columns.columns().len();
         let mut columns = leg.further.columns().to_vec();
@@ -231,7 +234,7 @@ impl FittedPlatform<'_> {
         let parameters = self.problem.parameters(run);
         self.problem
             .with_active(run, &parameters, active, &all, |pass| {
-                Linearisation { tape, ..*pass }.reduce(watch)
+                pass.on(kept).reduce(watch)
             })
             .map_err(|error| CalibrationError::pass(run, error))
     }
@@ -246,11 +249,13 @@ impl FittedPlatform<'_> {
             for run in 0..self.records() {
                 let parameters = self.problem.parameters(run);
                 let score = self.problem.with_run(run, &parameters, |pass| {
-                    let tape = self.solution.tapes[run].as_deref();
-                    let pass = Linearisation { tape, ..*pass };
                     let mut factors = factors.to_vec();
                     factors.resize(factors.len() + pass.walks.walks.len(), 1.0);
-                    pass.noise_score(&factors)
+                    Pass {
+                        factors: &factors,
+                        ..pass.on(self.kept(run))
+                    }
+                    .noise_score()
                 })?;
                 add_score(&mut total, score);
             }
@@ -275,16 +280,15 @@ fn of_logged_quantities() -> impl Iterator<Item = usize> {
 }
 
 /// Adds a pass over another record, whose columns are the same.
-fn add(total: &mut Option<Reduced<3>>, own: Reduced<3>) {
+fn add(total: &mut Option<Reduced>, own: Reduced) {
     let Some(total) = total else {
         *total = Some(own);
         return;
     };
     total.gram += own.gram;
-    total.trajectory_cost += own.trajectory_cost;
     total.log_variance += own.log_variance;
     total.values += own.values;
     total.rows += own.rows;
     total.last = own.last;
-    total.last_walks = own.last_walks;
+    total.last_covariance = own.last_covariance;
 }

@@ -3,8 +3,8 @@
 use core::ops::Range;
 
 use gyrocal::Catalogue;
-use gyrocal::estimation::batch::{Linearisation, Walks};
 use gyrocal::trajectory::Orientation;
+use gyrocal_inference::{Trajectory, Walks};
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 use super::{AXES, FittedPlatform};
@@ -132,7 +132,9 @@ impl FittedPlatform<'_> {
                 parameter: walk.parameter,
                 change: leg.walk_changes.get(changes + index).unwrap_or(&0.0) + row[0],
                 by_values,
-                sigma: reduced.last_walks[index * count + index].max(0.0).sqrt(),
+                sigma: reduced.last_covariance[(AXES + index) * (AXES + count + 1)]
+                    .max(0.0)
+                    .sqrt(),
                 density: walk.density,
             }
         });
@@ -149,13 +151,13 @@ impl FittedPlatform<'_> {
         parameters: &[f64],
         rows: Range<usize>,
     ) -> Result<Vec<Orientation>, CalibrationError> {
-        let none: [usize; 0] = [];
-        self.problem
-            .with_active(0, parameters, &none, &ExtraColumns::default(), |pass| {
-                let walks = Walks::default();
-                Linearisation { walks, ..*pass }.free_run_over(rows)
-            })
-            .map_err(|error| CalibrationError::pass(0, error))
+        let none = ExtraColumns::default();
+        Trajectory {
+            walks: Walks::default(),
+            ..self.problem.trajectory(0, parameters, &[], &none)
+        }
+        .free_run_over(rows)
+        .map_err(|error| CalibrationError::pass(0, error))
     }
 
     /// Variance that the gyros' white noise adds to the attitude about each axis, rad²/s.

@@ -3,8 +3,8 @@
 mod likelihood;
 mod steps;
 
-use gyrocal::estimation::batch::Walk;
 use gyrocal_hypothesis::{RateNoise, RateNoiseFit};
+use gyrocal_inference::Walk;
 use gyrocal_statistics::NORMAL_97_5;
 use likelihood::Likelihood;
 use nalgebra::{Cholesky, DVector};

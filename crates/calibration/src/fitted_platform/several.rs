@@ -3,9 +3,9 @@
 use core::ops::Range;
 use std::sync::Arc;
 
-use gyrocal::estimation::batch::NoiseScore;
 use gyrocal::trajectory::Orientation;
 use gyrocal_hypothesis::{Column, ModelExtension, Rows};
+use gyrocal_inference::NoiseScore;
 use gyrocal_record::{Bench, Record};
 use nalgebra::{Cholesky, DMatrix};
 

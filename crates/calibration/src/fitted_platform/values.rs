@@ -125,10 +125,7 @@ impl FittedPlatform<'_> {
         let mut simulated_g = Vec::with_capacity(self.points().len());
         for run in 0..self.problem.runs.len() {
             let parameters = self.problem.parameters(run);
-            let points = self
-                .problem
-                .with_run(run, &parameters, |pass| pass.free_run())
-                .map_err(|error| CalibrationError::pass(run, error))?;
+            let points = self.problem.free_run(run, &parameters)?;
             simulated_g.extend(self.problem.outputs(run, &points, &parameters));
         }
         Ok(simulated_g)

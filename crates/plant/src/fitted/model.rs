@@ -3,14 +3,12 @@
 use gyrocal_hypothesis::{
     Column, Covariate, FittedModel, ModelExtension, Plant, RateNoise, RateNoiseFit, StateJump,
 };
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 use super::FittedPlant;
-use crate::backward;
 use crate::error::PlantError;
 use crate::lines::of_parameters;
 use crate::noise::Restricted;
-use crate::pass::Keep;
 
 /// Smallest range of a covariate that a dependence on it is looked for over, as a share of its size.
 const LEAST_RANGE: f64 = 1e-6;
@@ -138,10 +136,21 @@ impl FittedModel for FittedPlant {
     }
 
     fn state_jumps(&self) -> Result<Vec<Option<StateJump>>, PlantError> {
-        let reduced = self.pass(&self.lines(), Keep::All)?;
+        let (lines, noise) = (self.lines(), self.problem.noise(&self.ratios));
         let (lin, covariance) = (&self.solution.lin, &self.solution.covariance);
-        let mut jumps =
-            backward::jumps(lin, &reduced.kept, covariance).ok_or(PlantError::Singular)?;
+        let n = lin.rows.layout.states;
+        let mut jumps = vec![None; self.record().len()];
+        lin.pass(&noise, &lines)
+            .jumps(|row, found| {
+                let cross = DMatrix::from_fn(lines.len(), n, |i, j| found.columns[i + 1][j]);
+                let projected = cross.tr_mul(&(covariance * &cross));
+                jumps[row] = Some(StateJump {
+                    score: DVector::from_row_slice(&found.columns[0]),
+                    information: DMatrix::from_row_slice(n, n, &found.information) - projected,
+                    outputs: DVector::from_row_slice(&found.readings),
+                });
+            })
+            .map_err(|_| PlantError::Singular)?;
         // The states that a record begins with are free.
         for start in &self.record().starts {
             jumps[*start] = None;

@@ -3,8 +3,8 @@
 mod eliminated;
 
 use eliminated::Eliminated;
-use gyrocal::estimation::batch::{Linearisation, NoiseScore, Walk, Walks};
 use gyrocal_hypothesis::RateNoiseFit;
+use gyrocal_inference::{NoiseScore, Pass, Walk, Walks};
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 use super::steps::{bounded, moved, scale};
@@ -224,18 +224,15 @@ impl Likelihood<'_, '_> {
             let mut score = problem
                 .with_first_rows(run, &parameters, count, |linearised| {
                     work::differentiate((2 * AXES + self.walks.len()).saturating_sub(first));
-                    let tape = self.fitted.solution.tapes[run].as_deref();
-                    let walks = Walks {
-                        walks: &self.walks,
-                        changes,
+                    Pass {
+                        walks: Walks {
+                            walks: &self.walks,
+                            changes,
+                        },
+                        factors,
+                        ..linearised.on(self.fitted.kept(run))
                     }
-                    .over_first(count);
-                    Linearisation {
-                        tape,
-                        walks,
-                        ..*linearised
-                    }
-                    .noise_score_of_columns(factors, first, &change)
+                    .noise_score_of_columns(first, &change)
                 })
                 .map_err(|error| CalibrationError::pass(run, error))?;
             score.with_rows = rows_of_unknowns(&score.with_rows, &columns, problem.unknowns.len());

@@ -1,6 +1,6 @@
 //! The unknowns of the fit at one noise: eliminated from its likelihood, or integrated out of it.
 
-use gyrocal::estimation::batch::NoiseScore;
+use gyrocal_inference::NoiseScore;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use super::{GYRO_NOISE_PRIOR_SIGMA, Likelihood};

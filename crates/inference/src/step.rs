@@ -1,11 +1,10 @@
 //! One step of the trajectory: from a point to the next row, with all derivatives.
 
-use alloc::vec;
-use alloc::vec::Vec;
+use gyrocal_estimation::{
+    Corrected, Derivatives, EstimationError, Integration, Integrator, Manifold,
+};
 
-use super::{Corrected, Manifold, Series};
-use crate::error::EstimationError;
-use crate::transition::{Derivatives, Integration, Integrator};
+use crate::trajectory::Series;
 
 /// Most parts of one interval; more are a mistake in the times or in the longest step.
 const MAX_PARTS: f64 = 1e6;
@@ -26,15 +25,6 @@ impl<const M: usize> Step<M> {
             moving: identity(),
             shares: [[[0.0; M]; M]; M],
         }
-    }
-
-    /// Covariance that all noise adds over the step.
-    pub(crate) fn noise(&self) -> [[f64; M]; M] {
-        let mut noise = [[0.0; M]; M];
-        for share in &self.shares {
-            add(&mut noise, share);
-        }
-        noise
     }
 
     /// Transforms the derivatives to corrections of the point that a correction of the prediction
@@ -237,13 +227,6 @@ pub(crate) fn sandwich<const M: usize>(a: &[[f64; M]; M], b: &[[f64; M]; M]) -> 
         }
     }
     result
-}
-
-/// a += b.
-pub(crate) fn add<const M: usize>(a: &mut [[f64; M]; M], b: &[[f64; M]; M]) {
-    for (sum, value) in a.as_flattened_mut().iter_mut().zip(b.as_flattened()) {
-        *sum += value;
-    }
 }
 
 /// Replaces the M rows of `columns` by their product with `map` from the left.

@@ -1,11 +1,10 @@
 //! Score and information of the noise against the joint Gaussian density.
 
 use chacha20::ChaCha12Rng;
-use gyrocal_estimation::batch::NoColumns;
 use nalgebra::{DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
 
-use crate::chain::Chain;
+use crate::chain::{Chain, none};
 use crate::density::Density;
 
 #[test]
@@ -15,7 +14,7 @@ fn the_score_of_the_noise_is_the_gradient_of_its_likelihood() {
     let parameters = chain.parameters();
     let score = |factors: &[f64; 4]| {
         chain
-            .linearised(&trajectory, &parameters, &[], &NoColumns)
+            .linearised(&trajectory, &parameters, &[], &none())
             .noise_score(factors)
             .unwrap()
     };
@@ -63,7 +62,7 @@ fn the_information_on_the_noise_is_that_of_the_joint_gaussian() {
         let normals = DVector::from_fn(covariance.nrows(), |_, _| normal(&mut rng));
         chain.set_residuals(&trajectory, &(cholesky.l() * normals));
         let score = chain
-            .linearised(&trajectory, &parameters, &[], &NoColumns)
+            .linearised(&trajectory, &parameters, &[], &none())
             .noise_score(&[1.0; 4])
             .unwrap();
         for k in 0..3 {

@@ -1,13 +1,16 @@
-//! Columns of a linearised model that are no parameters of it: jumps of states, steps and other
-//! functions of time, changes of outputs.
+//! Columns of a linearised record: its parameters, jumps of states, steps and other functions of time,
+//! changes of outputs.
 
 use std::sync::Arc;
 
-use gyrocal_estimation::batch::Columns;
-
-/// One such column.
+/// One unknown of a linearised record.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Column {
+    /// A parameter of the model.
+    Parameter {
+        /// Index of the parameter.
+        parameter: usize,
+    },
     /// Change of a moving state at the first row of a record, outside its prior.
     InitialState {
         /// The first row of the record.
@@ -43,6 +46,33 @@ pub enum Column {
         /// Change at each row, in the unit of the output.
         change: Arc<[f64]>,
     },
+}
+
+impl Column {
+    /// The parameter that it changes.
+    #[must_use]
+    pub fn parameter(&self) -> Option<usize> {
+        match self {
+            Self::Parameter { parameter }
+            | Self::Step { parameter, .. }
+            | Self::TimeProfile { parameter, .. } => Some(*parameter),
+            Self::InitialState { .. } | Self::StateJump { .. } | Self::Output { .. } => None,
+        }
+    }
+
+    /// What its parameter is multiplied with in the step after a row, and at the row; of the last row the
+    /// number of the step before it.
+    #[must_use]
+    pub fn weight(&self, row: usize) -> f64 {
+        match self {
+            Self::Parameter { .. } => 1.0,
+            Self::Step { row: from, .. } => f64::from(u8::from(row >= *from)),
+            Self::TimeProfile { steps, .. } => {
+                steps.get(row).or(steps.last()).copied().unwrap_or(0.0)
+            }
+            Self::InitialState { .. } | Self::StateJump { .. } | Self::Output { .. } => 0.0,
+        }
+    }
 }
 
 /// A list of columns with their prior standard deviations and present amplitudes.
@@ -81,6 +111,12 @@ impl ExtraColumns {
         &self.sigmas
     }
 
+    /// Those that are not zero, with their amplitudes.
+    pub(crate) fn present(&self) -> impl Iterator<Item = (&Column, f64)> {
+        let all = self.columns.iter().zip(self.amplitudes.iter().copied());
+        all.filter(|(_, amplitude)| *amplitude != 0.0)
+    }
+
     /// The columns.
     #[must_use]
     pub fn columns(&self) -> &[Column] {
@@ -108,63 +144,6 @@ impl ExtraColumns {
     pub fn set_amplitudes(&mut self, amplitudes: impl Iterator<Item = f64>) {
         for (target, amplitude) in self.amplitudes.iter_mut().zip(amplitudes) {
             *target = amplitude;
-        }
-    }
-}
-
-impl<const M: usize, const Y: usize> Columns<M, Y> for ExtraColumns {
-    fn count(&self) -> usize {
-        self.columns.len()
-    }
-
-    fn amplitude(&self, column: usize) -> f64 {
-        self.amplitudes[column]
-    }
-
-    fn start(&self, column: usize) -> [f64; M] {
-        let mut change = [0.0; M];
-        if let Column::InitialState { row: 0, state } = self.columns[column] {
-            change[state] = 1.0;
-        }
-        change
-    }
-
-    fn drive(&self, row: usize, parameters: &[f64], stride: usize, drive: [&mut [f64]; M]) {
-        for (index, column) in self.columns.iter().enumerate() {
-            match column {
-                Column::InitialState { .. } | Column::Output { .. } => {}
-                Column::StateJump { row: at, state } => {
-                    if *at == row {
-                        drive[*state][index] = 1.0;
-                    }
-                }
-                Column::Step { parameter, row: at } => {
-                    if row >= *at {
-                        for i in 0..M {
-                            drive[i][index] = parameters[i * stride + parameter];
-                        }
-                    }
-                }
-                Column::TimeProfile { parameter, steps } => {
-                    let weight = steps.get(row).copied().unwrap_or(0.0);
-                    for i in 0..M {
-                        drive[i][index] = weight * parameters[i * stride + parameter];
-                    }
-                }
-            }
-        }
-    }
-
-    fn output(&self, row: usize, output: usize, direct: &mut [f64]) {
-        for place in &self.outputs {
-            if let Column::Output {
-                output: own,
-                change,
-            } = &self.columns[*place]
-                && *own == output
-            {
-                direct[*place] = change.get(row).copied().unwrap_or(0.0);
-            }
         }
     }
 }

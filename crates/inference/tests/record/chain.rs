@@ -1,8 +1,10 @@
 //! A short record of a pendulum with gaps, and Gauss-Newton steps on it.
 
 use chacha20::ChaCha12Rng;
-use gyrocal_estimation::batch::{Columns, Linearisation, Series, Walks};
-use gyrocal_estimation::{Integration, Manifold};
+use gyrocal_estimation::{EstimationError, Integration, Manifold};
+use gyrocal_inference::{
+    Column, ExtraColumns, NoiseScore, Pass, Reduced, Series, Smoothed, Trajectory, Walks,
+};
 use gyrocal_scalar::Model;
 use nalgebra::{Cholesky, DMatrix, DVector, Matrix2, Vector2};
 use rand::{RngExt, SeedableRng};
@@ -19,7 +21,7 @@ pub(crate) const PRIOR_COVARIANCE: [[f64; 2]; 2] = [[0.01, 0.006], [0.006, 0.04]
 pub(crate) const PRIOR: [f64; 4] = [0.0, 0.0, 4.0, 0.1];
 pub(crate) const SIGMA: [f64; 4] = [0.05, 0.02, 0.5, 0.05];
 
-/// Row after which [`Disturbances`] knock, and first row whose angle they shift.
+/// Row after which [`disturbances`] knock, and first row whose angle they shift.
 pub(crate) const KNOCKED: usize = 11;
 pub(crate) const SHIFTED: usize = 17;
 
@@ -204,81 +206,109 @@ impl Chain {
         sum
     }
 
-    pub(crate) fn linearised<'a, C: Columns<2, 2>>(
+    pub(crate) fn linearised<'a>(
         &'a self,
         points: &'a [[f64; 2]],
         parameters: &'a [f64],
         active: &'a [usize],
-        further: &'a C,
-    ) -> Linearisation<'a, Pendulum, Self, C, 2, 2> {
-        Linearisation {
-            model: &Pendulum,
-            inputs: (),
-            series: self,
-            integration: Integration::RK4,
-            longest_step_s: PARTS_S,
-            noise_density: [DENSITY, 0.0],
-            prior: PRIOR_POINT,
-            prior_covariance: PRIOR_COVARIANCE,
-            points,
-            tape: None,
-            walks: Walks::default(),
-            parameters,
-            active,
-            further,
+        further: &'a ExtraColumns,
+    ) -> Case<'a> {
+        let own = active.iter().map(|parameter| Column::Parameter {
+            parameter: *parameter,
+        });
+        Case {
+            columns: own.chain(further.columns().iter().cloned()).collect(),
+            trajectory: Trajectory {
+                model: &Pendulum,
+                inputs: (),
+                series: self,
+                integration: Integration::RK4,
+                longest_step_s: PARTS_S,
+                noise_density: [DENSITY, 0.0],
+                prior: PRIOR_POINT,
+                prior_covariance: PRIOR_COVARIANCE,
+                points,
+                walks: Walks::default(),
+                parameters,
+                wanted: active,
+                further,
+            },
         }
     }
 }
 
-/// A first rate that is off, a knock to the rate, and a shift of the measured angle.
-#[derive(Default)]
-pub(crate) struct Disturbances {
-    pub(crate) sizes: [f64; 3],
+/// A linearised record with its columns.
+#[derive(Clone)]
+pub(crate) struct Case<'a> {
+    pub(crate) trajectory: Trajectory<'a, Pendulum, Chain, 2, 2>,
+    pub(crate) columns: Vec<Column>,
 }
 
-impl Columns<2, 2> for Disturbances {
-    fn count(&self) -> usize {
-        3
+impl<'a> Case<'a> {
+    /// With parameters that walk.
+    pub(crate) fn walking(mut self, walks: Walks<'a>) -> Self {
+        self.trajectory.walks = walks;
+        self
     }
 
-    fn amplitude(&self, column: usize) -> f64 {
-        self.sizes[column]
-    }
-
-    fn start(&self, column: usize) -> [f64; 2] {
-        [0.0, if column == 0 { 1.0 } else { 0.0 }]
-    }
-
-    fn drive(&self, row: usize, _: &[f64], _: usize, drive: [&mut [f64]; 2]) {
-        if row == KNOCKED {
-            drive[1][1] = 1.0;
+    pub(crate) fn pass(&self) -> Pass<'_> {
+        Pass {
+            walks: self.trajectory.walks,
+            ..Pass::new(&self.trajectory, &self.columns)
         }
     }
 
-    fn output(&self, row: usize, output: usize, direct: &mut [f64]) {
-        if row >= SHIFTED && output == 0 {
-            direct[2] = 1.0;
+    pub(crate) fn reduce(&self) -> Result<Reduced, EstimationError> {
+        self.pass().reduce_with_cost(|_| ())
+    }
+
+    pub(crate) fn smooth(&self, change: &[f64]) -> Result<Smoothed, EstimationError> {
+        self.pass().smooth(change)
+    }
+
+    pub(crate) fn noise_score(&self, factors: &[f64]) -> Result<NoiseScore, EstimationError> {
+        Pass {
+            factors,
+            ..self.pass()
         }
+        .noise_score()
     }
-}
 
-/// Columns whose amplitudes can be estimated.
-pub(crate) trait Estimated: Columns<2, 2> {
-    fn with(&self, sizes: &[f64]) -> Self;
-}
-
-impl Estimated for gyrocal_estimation::batch::NoColumns {
-    fn with(&self, _: &[f64]) -> Self {
-        Self
-    }
-}
-
-impl Estimated for Disturbances {
-    fn with(&self, sizes: &[f64]) -> Self {
-        Self {
-            sizes: [sizes[0], sizes[1], sizes[2]],
+    pub(crate) fn noise_score_of_columns(
+        &self,
+        factors: &[f64],
+        first: usize,
+        change: &[f64],
+    ) -> Result<NoiseScore, EstimationError> {
+        Pass {
+            factors,
+            ..self.pass()
         }
+        .noise_score_of_columns(first, change)
     }
+}
+
+/// No further columns.
+pub(crate) fn none() -> ExtraColumns {
+    ExtraColumns::default()
+}
+
+/// A first rate that is off, a knock to the rate, and a shift of the measured angle, with these sizes.
+pub(crate) fn disturbances(sizes: &[f64]) -> ExtraColumns {
+    let change = (0..30).map(|row| f64::from(u8::from(row >= SHIFTED)));
+    let mut columns = ExtraColumns::new(vec![
+        Column::InitialState { row: 0, state: 1 },
+        Column::StateJump {
+            row: KNOCKED,
+            state: 1,
+        },
+        Column::Output {
+            output: 0,
+            change: change.collect(),
+        },
+    ]);
+    columns.set_amplitudes(sizes.iter().copied());
+    columns
 }
 
 /// Result of Gauss-Newton steps.
@@ -291,7 +321,11 @@ pub(crate) struct Found {
 }
 
 /// Steps on all parameters and on further columns with these prior sigmas about zero.
-pub(crate) fn solve<C: Estimated>(chain: &Chain, columns: &C, sigma: &[f64]) -> Found {
+pub(crate) fn solve(
+    chain: &Chain,
+    columns: impl Fn(&[f64]) -> ExtraColumns,
+    sigma: &[f64],
+) -> Found {
     let active = [0, 1, 2, 3];
     let prior: Vec<f64> = PRIOR.into_iter().chain(sigma.iter().map(|_| 0.0)).collect();
     let sigma: Vec<f64> = SIGMA.iter().chain(sigma).copied().collect();
@@ -299,10 +333,10 @@ pub(crate) fn solve<C: Estimated>(chain: &Chain, columns: &C, sigma: &[f64]) -> 
     let mut values = prior.clone();
     let mut points = chain.trajectory();
     for _ in 0..30 {
-        let columns = columns.with(&values[4..]);
+        let columns = columns(&values[4..]);
         let parameters = values[..4].to_vec();
         let pass = chain.linearised(&points, &parameters, &active, &columns);
-        let reduced = pass.reduce(|_| ()).unwrap();
+        let reduced = pass.reduce().unwrap();
         let information = DMatrix::from_fn(count, count, |i, j| {
             let own = if i == j { sigma[i].powi(-2) } else { 0.0 };
             reduced.gram[(i + 1, j + 1)] + own
@@ -315,7 +349,7 @@ pub(crate) fn solve<C: Estimated>(chain: &Chain, columns: &C, sigma: &[f64]) -> 
         let smoothed = pass.smooth(change.as_slice()).unwrap();
         let next = points
             .iter()
-            .zip(&smoothed.corrections)
+            .zip(smoothed.corrections.chunks_exact(2))
             .map(|(point, correction)| [point[0] + correction[0], point[1] + correction[1]])
             .collect();
         let own: f64 = (0..count)

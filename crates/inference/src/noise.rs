@@ -1,18 +1,14 @@
 //! Likelihood of the noise: its derivatives, carried along with the filter.
 
-use alloc::vec;
-use alloc::vec::Vec;
-
+use gyrocal_estimation::EstimationError;
+use gyrocal_scalar::Scalar;
 use nalgebra::DMatrix;
 
-use super::filter::predict_columns;
-use super::linearisation::Whitened;
-use super::pass::Taken;
-use super::step::{Step, add};
-use super::walk::{Joint, WalkStep, dot};
+use crate::pass::{Made, Pass, Taken, Watch};
+use crate::small::{add_triangle, apply, dot, product, sandwich};
 
 /// Likelihood of the noise at one point, and its derivatives by the natural logarithms of the noise
-/// variances: those of the outputs, those of the noise inputs, those of the random walks.
+/// variances: those of the outputs, those of the noises, those of the random walks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NoiseScore {
     /// Number of output values used.
@@ -38,7 +34,7 @@ impl NoiseScore {
     /// The log-likelihood with all columns known.
     #[must_use]
     pub fn log_likelihood(&self) -> f64 {
-        let constant = self.values as f64 * ln(core::f64::consts::TAU);
+        let constant = self.values as f64 * Scalar::ln(core::f64::consts::TAU);
         -0.5 * (self.gram[(0, 0)] + self.log_variance + constant)
     }
 
@@ -57,14 +53,18 @@ const BLOCK: usize = 48;
 
 /// Derivatives of mean, columns and covariance of a filter with respect to logarithms of variances
 /// (Gupta, Mehra, IEEE Trans. Automatic Control 19(6), 1974).
-pub(crate) struct NoiseFilter<const M: usize> {
+struct NoiseFilter {
+    states: usize,
     outputs: usize,
+    triangle: usize,
+    /// Factors of the noises.
+    factors: Vec<f64>,
     stride: usize,
     /// The first noise that derivatives are by.
     first: usize,
-    each: Vec<Derivative<M>>,
-    /// Derivatives of the columns of the filter: a row for each moving state, then for each walk, that
-    /// holds those by each logarithm side by side. All have the same transition and the same gain.
+    each: Vec<Derivative>,
+    /// Derivatives of the columns of the filter: a row for each state, that holds those by each logarithm
+    /// side by side. All have the same transition and the same gain.
     columns: Vec<f64>,
     score: NoiseScore,
     /// Share of residual and columns in the innovations whose information is taken.
@@ -72,14 +72,16 @@ pub(crate) struct NoiseFilter<const M: usize> {
     /// Derivatives of the innovations, then of the whitened rows, by each logarithm.
     d_rows: Vec<f64>,
     d_cross: Vec<f64>,
-    /// Gain of the last output: of the moving states, then of the walks.
+    /// Gain of the last output.
     gains: Vec<f64>,
+    memory: Vec<f64>,
     sums: Sums,
 }
 
 /// Derivatives by one logarithm.
-struct Derivative<const M: usize> {
-    covariance: Joint<M>,
+struct Derivative {
+    /// By rows.
+    covariance: Vec<f64>,
     /// Of the last innovation.
     innovation: f64,
     /// Of the variance of the last innovation, over it.
@@ -138,23 +140,32 @@ impl Sums {
     }
 }
 
-impl<const M: usize> NoiseFilter<M> {
-    pub(crate) fn new(outputs: usize, columns: usize, walks: usize, first: usize) -> Self {
-        let count = outputs + M + walks;
+impl NoiseFilter {
+    fn new(pass: &Pass<'_>, columns: usize, first: usize) -> Self {
+        let outputs = pass.record.layout().outputs;
+        let (states, noises) = pass.sizes();
+        let count = outputs + noises;
         let stride = columns + 1;
         let first = first.min(count);
         let derivatives = count - first;
         let derivative = |_| Derivative {
-            covariance: Joint::new([[0.0; M]; M], walks),
+            covariance: vec![0.0; states * states],
             innovation: 0.0,
             variance: 0.0,
         };
+        let mut shares = vec![0.0; stride];
+        shares[0] = 1.0;
         Self {
+            states,
             outputs,
+            triangle: states * (states + 1) / 2,
+            factors: (outputs..count)
+                .map(|noise| pass.factors.get(noise).copied().unwrap_or(1.0))
+                .collect(),
             stride,
             first,
             each: (0..derivatives).map(derivative).collect(),
-            columns: vec![0.0; (M + walks) * derivatives * stride],
+            columns: vec![0.0; states * derivatives * stride],
             score: NoiseScore {
                 values: 0,
                 log_variance: 0.0,
@@ -164,103 +175,27 @@ impl<const M: usize> NoiseFilter<M> {
                 information: vec![0.0; count * count],
                 with_rows: vec![0.0; count * stride],
             },
-            shares: {
-                let mut shares = vec![0.0; stride];
-                shares[0] = 1.0;
-                shares
-            },
+            shares,
             d_rows: vec![0.0; derivatives * stride],
-            d_cross: vec![0.0; walks],
-            gains: vec![0.0; M + walks],
+            d_cross: vec![0.0; states],
+            gains: vec![0.0; states],
+            memory: vec![0.0; states * states.max(derivatives * stride)],
             sums: Sums::new(stride, derivatives),
         }
     }
 
-    /// Takes the information where the columns have changed by `change`.
-    pub(crate) fn change_columns(&mut self, change: &[f64]) {
-        for (share, change) in self.shares[1..].iter_mut().zip(change) {
-            *share = *change;
-        }
-    }
-
-    pub(crate) fn predict(&mut self, step: &Step<M>, walks: &[WalkStep<M>]) {
-        if self.each.is_empty() {
-            return;
-        }
-        let width = self.d_rows.len();
-        predict_columns(&step.moving, walks, &mut self.columns, width);
-        for (k, own) in (self.first..).zip(&mut self.each) {
-            own.covariance.predict(&step.moving, walks);
-            let Some(input) = k.checked_sub(self.outputs) else {
-                continue;
-            };
-            match input.checked_sub(M) {
-                None => add(&mut own.covariance.moving, &step.shares[input]),
-                Some(walk) => own.covariance.add_walk(walk, &walks[walk]),
-            }
-        }
-    }
-
-    /// Takes an output after the filter has.
-    pub(crate) fn take(&mut self, whitened: &Whitened<'_>, taken: &Taken<'_, M>) {
-        let deviation = whitened.deviation;
-        let total = deviation * deviation;
-        let reciprocal = 1.0 / total;
-        self.score.values += 1;
-        self.score.log_variance += ln(total);
-        self.set_innovations(&taken.jacobian);
-        let all = taken.cross.iter().chain(taken.walk_cross);
-        for (gain, cross) in self.gains.iter_mut().zip(all) {
-            *gain = cross * reciprocal;
-        }
-        let direct = whitened.output;
-        let (stride, width) = (self.stride, self.d_rows.len());
-        let per_deviation = 1.0 / deviation;
-        for (index, own) in self.each.iter_mut().enumerate() {
-            let k = self.first + index;
-            let d_noise = if k == direct { taken.variance } else { 0.0 };
-            let d_row = &mut self.d_rows[index * stride..(index + 1) * stride];
-            own.innovation = d_row.iter().zip(&self.shares).map(|(d, s)| d * s).sum();
-            let with_row = &mut self.score.with_rows[k * stride..(k + 1) * stride];
-            for (sum, column) in with_row.iter_mut().zip(whitened.columns) {
-                *sum += own.innovation * per_deviation * column;
-            }
-            let d_moving = own
-                .covariance
-                .with_output(&taken.jacobian, &mut self.d_cross);
-            let d_total = d_noise + dot(&taken.jacobian, &d_moving);
-            own.variance = d_total * reciprocal;
-            let d_all = d_moving.iter().chain(self.d_cross.iter());
-            let rows = self.columns.chunks_exact_mut(width);
-            for ((row, gain), d_cross) in rows.zip(&self.gains).zip(d_all) {
-                let innovation = (d_cross - gain * d_total) * per_deviation;
-                let row = &mut row[index * stride..(index + 1) * stride];
-                for ((value, own), column) in row.iter_mut().zip(&*d_row).zip(whitened.columns) {
-                    *value += innovation * column + gain * own;
-                }
-            }
-            own.subtract(taken, &self.gains, &d_moving, &self.d_cross);
-            self.score.d_log_variance[k] += own.variance;
-            // Of the whitened row w = v / s: v' / s - w s' / s.
-            let half = 0.5 * own.variance;
-            for (d_row, column) in d_row.iter_mut().zip(whitened.columns) {
-                *d_row = *d_row * per_deviation - half * column;
-            }
-        }
-        self.sums.add(whitened.columns, &self.d_rows);
-        self.add_information(reciprocal);
-    }
-
     /// Sets the derivatives of the innovations of an output.
-    fn set_innovations(&mut self, jacobian: &[f64; M]) {
+    fn set_innovations(&mut self, jacobian: &[f64]) {
         let width = self.d_rows.len();
         self.d_rows.fill(0.0);
         if width == 0 {
             return;
         }
         for (h, row) in jacobian.iter().zip(self.columns.chunks_exact(width)) {
-            for (d_row, value) in self.d_rows.iter_mut().zip(row) {
-                *d_row -= h * value;
+            if *h != 0.0 {
+                for (d_row, value) in self.d_rows.iter_mut().zip(row) {
+                    *d_row -= h * value;
+                }
             }
         }
     }
@@ -280,7 +215,7 @@ impl<const M: usize> NoiseFilter<M> {
         }
     }
 
-    pub(crate) fn finish(mut self) -> NoiseScore {
+    fn finish(mut self) -> NoiseScore {
         self.sums.multiply();
         let mut score = self.score;
         score.gram = self.sums.gram();
@@ -293,39 +228,125 @@ impl<const M: usize> NoiseFilter<M> {
     }
 }
 
-impl<const M: usize> Derivative<M> {
-    /// The derivative of - c cᵀ / S, c being the covariance with the output and `gains` c / S.
-    fn subtract(
-        &mut self,
-        taken: &Taken<'_, M>,
-        gains: &[f64],
-        d_moving: &[f64; M],
-        d_walks: &[f64],
-    ) {
-        let (of_moving, of_walks) = gains.split_at(M);
-        let joint = &mut self.covariance;
-        let left: [f64; M] = core::array::from_fn(|i| d_moving[i] - taken.cross[i] * self.variance);
-        for i in 0..M {
-            for j in 0..=i {
-                joint.moving[i][j] -= d_moving[i] * of_moving[j] + of_moving[i] * left[j];
-                joint.moving[j][i] = joint.moving[i][j];
+impl Watch for NoiseFilter {
+    fn step(&mut self, made: &Made<'_>) -> Result<(), EstimationError> {
+        if self.each.is_empty() {
+            return Ok(());
+        }
+        let (n, width) = (self.states, self.d_rows.len());
+        product(made.by_states, &self.columns, width, &mut self.memory);
+        let size = self.columns.len();
+        self.columns.copy_from_slice(&self.memory[..size]);
+        for (k, own) in (self.first..).zip(&mut self.each) {
+            sandwich(made.by_states, &mut own.covariance, n, &mut self.memory);
+            if let Some(noise) = k.checked_sub(self.outputs) {
+                let share = &made.shares[noise * self.triangle..(noise + 1) * self.triangle];
+                add_triangle(&mut own.covariance, n, share, self.factors[noise]);
             }
         }
-        let count = of_walks.len();
-        for (w, gain) in of_walks.iter().enumerate() {
-            let left_walk = d_walks[w] - taken.walk_cross[w] * self.variance;
-            for i in 0..M {
-                joint.cross[w][i] -= d_moving[i] * gain + of_moving[i] * left_walk;
+        Ok(())
+    }
+
+    fn take(&mut self, taken: &Taken<'_>) {
+        let whitened = &taken.whitened;
+        let deviation = whitened.deviation;
+        let total = deviation * deviation;
+        let reciprocal = 1.0 / total;
+        self.score.values += 1;
+        self.score.log_variance += Scalar::ln(total);
+        self.set_innovations(taken.jacobian);
+        for (gain, cross) in self.gains.iter_mut().zip(taken.cross) {
+            *gain = cross * reciprocal;
+        }
+        let (stride, width) = (self.stride, self.d_rows.len());
+        let per_deviation = 1.0 / deviation;
+        for (index, own) in self.each.iter_mut().enumerate() {
+            let k = self.first + index;
+            let d_noise = if k == whitened.output {
+                taken.variance
+            } else {
+                0.0
+            };
+            let d_row = &mut self.d_rows[index * stride..(index + 1) * stride];
+            own.innovation = dot(d_row, &self.shares);
+            let with_row = &mut self.score.with_rows[k * stride..(k + 1) * stride];
+            for (sum, column) in with_row.iter_mut().zip(whitened.columns) {
+                *sum += own.innovation * per_deviation * column;
             }
-            for v in 0..=w {
-                let change = left_walk * of_walks[v] + gain * d_walks[v];
-                joint.walks[w * count + v] -= change;
-                joint.walks[v * count + w] = joint.walks[w * count + v];
+            apply(&own.covariance, taken.jacobian, &mut self.d_cross);
+            let d_total = d_noise + dot(taken.jacobian, &self.d_cross);
+            own.variance = d_total * reciprocal;
+            let rows = self.columns.chunks_exact_mut(width);
+            for ((row, gain), d_cross) in rows.zip(&self.gains).zip(&self.d_cross) {
+                let innovation = (d_cross - gain * d_total) * per_deviation;
+                let row = &mut row[index * stride..(index + 1) * stride];
+                for ((value, own), column) in row.iter_mut().zip(&*d_row).zip(whitened.columns) {
+                    *value += innovation * column + gain * own;
+                }
+            }
+            own.subtract(taken.cross, &self.gains, &self.d_cross);
+            self.score.d_log_variance[k] += own.variance;
+            // Of the whitened row w = v / s: v' / s - w s' / s.
+            let half = 0.5 * own.variance;
+            for (d_row, column) in d_row.iter_mut().zip(whitened.columns) {
+                *d_row = *d_row * per_deviation - half * column;
+            }
+        }
+        self.sums.add(whitened.columns, &self.d_rows);
+        self.add_information(reciprocal);
+    }
+}
+
+impl Derivative {
+    /// The derivative of - c cᵀ / S, c being the covariance with the output and `gains` c / S.
+    fn subtract(&mut self, cross: &[f64], gains: &[f64], d_cross: &[f64]) {
+        let n = cross.len();
+        for i in 0..n {
+            for j in 0..=i {
+                let left = d_cross[j] - cross[j] * self.variance;
+                let change = d_cross[i] * gains[j] + gains[i] * left;
+                self.covariance[i * n + j] -= change;
+                self.covariance[j * n + i] = self.covariance[i * n + j];
             }
         }
     }
 }
 
-fn ln(value: f64) -> f64 {
-    gyrocal_scalar::Scalar::ln(value)
+impl Pass<'_> {
+    /// Likelihood of the noise with its derivatives, all columns held fixed.
+    ///
+    /// # Errors
+    /// As [`Self::reduce`].
+    pub fn noise_score(&self) -> Result<NoiseScore, EstimationError> {
+        let none = vec![0.0; self.columns.len()];
+        let mut filter = NoiseFilter::new(self, 0, 0);
+        self.run(Some(&none), &mut filter)?;
+        Ok(filter.finish())
+    }
+
+    /// The same with the columns free, for a likelihood that they are to be eliminated from, and with
+    /// derivatives by the noises from `first` on only; those by the others are zero. The information is
+    /// that where the columns have changed by `change`; by nothing if that is empty.
+    ///
+    /// # Errors
+    /// As [`Self::noise_score`], and [`EstimationError::InvalidArgument`] if there is not one change for
+    /// each column.
+    pub fn noise_score_of_columns(
+        &self,
+        first: usize,
+        change: &[f64],
+    ) -> Result<NoiseScore, EstimationError> {
+        let count = self.columns.len();
+        if !change.is_empty() && change.len() != count {
+            return Err(EstimationError::InvalidArgument {
+                expected: "one change for each column",
+            });
+        }
+        let mut filter = NoiseFilter::new(self, count, first);
+        for (share, change) in filter.shares[1..].iter_mut().zip(change) {
+            *share = *change;
+        }
+        self.run(None, &mut filter)?;
+        Ok(filter.finish())
+    }
 }

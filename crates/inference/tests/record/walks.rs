@@ -1,11 +1,11 @@
 //! Parameters that walk, against the joint Gaussian density of outputs and walks.
 
 use gyrocal_estimation::EstimationError;
-use gyrocal_estimation::batch::{Columns, Linearisation, NoColumns, Walk, Walks};
+use gyrocal_inference::{Column, ExtraColumns, KeptRecord, Pass, Walk, Walks};
 use gyrocal_scalar::Model;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-use crate::chain::{Chain, PRIOR, VARIANCE};
+use crate::chain::{Case, Chain, PRIOR, VARIANCE, none};
 use crate::common::Pendulum;
 use crate::density::Density;
 
@@ -93,25 +93,23 @@ fn dense(chain: &Chain, factors: [f64; 2]) -> Dense {
     }
 }
 
-fn walking<'a, C: Columns<2, 2>>(
-    chain: &'a Chain,
-    points: &'a [[f64; 2]],
-    further: &'a C,
-) -> Linearisation<'a, Pendulum, Chain, C, 2, 2> {
-    Linearisation {
-        walks: Walks {
-            walks: &WALKS,
-            changes: &[],
-        },
-        ..chain.linearised(points, &PRIOR, &ACTIVE, further)
-    }
+const OWN: Walks<'static> = Walks {
+    walks: &WALKS,
+    changes: &[],
+};
+
+fn walking<'a>(chain: &'a Chain, points: &'a [[f64; 2]], further: &'a ExtraColumns) -> Case<'a> {
+    chain
+        .linearised(points, &PRIOR, &ACTIVE, further)
+        .walking(OWN)
 }
 
 #[test]
 fn the_likelihood_with_walks_is_that_of_the_joint_gaussian() {
     let chain = Chain::measured(3);
     let points = chain.trajectory();
-    let pass = walking(&chain, &points, &NoColumns);
+    let no_columns = none();
+    let pass = walking(&chain, &points, &no_columns);
     let factors = [1.0, 1.0, 1.0, 1.0, 1.7, 0.4];
     let score = pass.noise_score(&factors).unwrap();
     let dense = dense(&chain, [1.7, 0.4]);
@@ -127,10 +125,7 @@ fn the_likelihood_with_walks_is_that_of_the_joint_gaussian() {
         score.log_likelihood()
     );
     // Without walks it is another likelihood.
-    let without = Linearisation {
-        walks: Walks::default(),
-        ..pass
-    };
+    let without = pass.walking(Walks::default());
     let other = without.noise_score(&factors[..4]).unwrap();
     assert!((other.log_likelihood() - expected).abs() > 1.0);
 }
@@ -139,7 +134,8 @@ fn the_likelihood_with_walks_is_that_of_the_joint_gaussian() {
 fn the_gradient_by_walks_and_columns_is_that_of_the_sums() {
     let chain = Chain::measured(4);
     let points = chain.trajectory();
-    let pass = walking(&chain, &points, &NoColumns);
+    let no_columns = none();
+    let pass = walking(&chain, &points, &no_columns);
     let at = [1.3, 0.6, 2.0, 1.0, 1.7, 0.4];
     let score = |factors: &[f64]| pass.noise_score_of_columns(factors, 0, &[]).unwrap();
     let found = score(&at);
@@ -177,7 +173,7 @@ fn the_gradient_by_walks_and_columns_is_that_of_the_sums() {
     let some = pass.noise_score_of_columns(&at, 4, &[]).unwrap();
     assert_eq!(some.d_gram[4..], found.d_gram[4..]);
     assert_eq!(some.information[28..30], found.information[28..30]);
-    let reduced = pass.reduce(|_| ()).unwrap();
+    let reduced = pass.reduce().unwrap();
     let declared = score(&[1.0; 6]);
     // The same sums in another order.
     assert!((reduced.gram - declared.gram).abs().max() < 1e-8);
@@ -196,19 +192,19 @@ fn the_information_is_that_of_the_innovations_where_the_columns_have_changed() {
     let rows = |logarithm: f64| {
         let mut walks = WALKS;
         walks[0].density *= f64::exp(logarithm);
-        let pass = Linearisation {
-            walks: Walks {
-                walks: &walks,
-                changes: &[],
-            },
-            ..walking(&chain, &points, &NoColumns)
-        };
+        let no_columns = none();
+        let pass = walking(&chain, &points, &no_columns).walking(Walks {
+            walks: &walks,
+            changes: &[],
+        });
         let mut rows = Vec::new();
-        pass.reduce(|seen| {
-            let innovation = seen.deviation * (seen.columns[0] + changed(seen.columns, &change));
-            rows.push((innovation, seen.deviation.powi(2), seen.columns.to_vec()));
-        })
-        .unwrap();
+        pass.pass()
+            .reduce(|seen| {
+                let innovation =
+                    seen.deviation * (seen.columns[0] + changed(seen.columns, &change));
+                rows.push((innovation, seen.deviation.powi(2), seen.columns.to_vec()));
+            })
+            .unwrap();
         rows
     };
     let (before, at, after) = (rows(-half), rows(0.0), rows(half));
@@ -222,7 +218,8 @@ fn the_information_is_that_of_the_innovations_where_the_columns_have_changed() {
             *sum += by_mean * column;
         }
     }
-    let pass = walking(&chain, &points, &NoColumns);
+    let no_columns = none();
+    let pass = walking(&chain, &points, &no_columns);
     let score = pass.noise_score_of_columns(&[1.0; 6], 0, &change).unwrap();
     let (walk, count) = (4, 6);
     // Differences of second order.
@@ -251,7 +248,8 @@ fn changed(columns: &[f64], change: &[f64]) -> f64 {
 fn smoothed_walks_are_the_conditional_mean() {
     let chain = Chain::measured(5);
     let points = chain.trajectory();
-    let pass = walking(&chain, &points, &NoColumns);
+    let no_columns = none();
+    let pass = walking(&chain, &points, &no_columns);
     let smoothed = pass.smooth(&[0.0; 2]).unwrap();
     let dense = dense(&chain, [1.0; 2]);
     let weights = Cholesky::new(dense.covariance)
@@ -278,13 +276,13 @@ fn the_smoothed_trajectory_has_the_least_cost() {
             changes,
         }
     }
+    let no_columns = none();
     for _ in 0..8 {
-        let pass = Linearisation {
-            walks: walks(&changes),
-            ..chain.linearised(&points, &PRIOR, &ACTIVE, &NoColumns)
-        };
+        let pass = chain
+            .linearised(&points, &PRIOR, &ACTIVE, &no_columns)
+            .walking(walks(&changes));
         let smoothed = pass.smooth(&[0.0; 2]).unwrap();
-        for (point, correction) in points.iter_mut().zip(&smoothed.corrections) {
+        for (point, correction) in points.iter_mut().zip(smoothed.corrections.chunks_exact(2)) {
             point[0] += correction[0];
             point[1] += correction[1];
         }
@@ -292,35 +290,19 @@ fn the_smoothed_trajectory_has_the_least_cost() {
             *change += correction;
         }
     }
-    let pass = Linearisation {
-        walks: walks(&changes),
-        ..chain.linearised(&points, &PRIOR, &ACTIVE, &NoColumns)
-    };
-    let reduced = pass.reduce(|_| ()).unwrap();
+    let pass = chain
+        .linearised(&points, &PRIOR, &ACTIVE, &no_columns)
+        .walking(walks(&changes));
+    let reduced = pass.reduce().unwrap();
     // Rounding: about the optimum both are the same sum of squares.
     assert!((reduced.trajectory_cost / reduced.gram[(0, 0)] - 1.0).abs() < 1e-9);
-    // On the tape too.
-    let (kept, tape) = pass.reduce_and_keep(|_| ()).unwrap();
-    let on_tape = Linearisation {
-        tape: Some(&tape),
-        ..pass
+    // Over the kept record too.
+    let kept = KeptRecord::new(&pass.trajectory).unwrap();
+    let on_kept = Pass {
+        record: &kept,
+        ..pass.pass()
     };
-    assert_eq!(on_tape.reduce(|_| ()).unwrap(), kept);
-}
-
-/// A sudden change of the state after a row.
-struct Knock(usize, usize);
-
-impl Columns<2, 2> for Knock {
-    fn count(&self) -> usize {
-        1
-    }
-
-    fn drive(&self, row: usize, _: &[f64], _: usize, drive: [&mut [f64]; 2]) {
-        if row == self.0 {
-            drive[self.1][0] = 1.0;
-        }
-    }
+    assert_eq!(on_kept.reduce_with_cost(|_| ()).unwrap(), reduced);
 }
 
 #[test]
@@ -328,16 +310,17 @@ fn scores_of_jumps_beside_walks_are_those_of_columns() {
     let chain = Chain::measured(7);
     let points = chain.trajectory();
     let mut jumps = Vec::new();
-    walking(&chain, &points, &NoColumns)
+    walking(&chain, &points, &none())
+        .pass()
         .jumps(|row, score| jumps.push((row, score.clone())))
         .unwrap();
     for (row, score) in &jumps {
         for state in 0..2 {
-            let knock = Knock(row - 1, state);
-            let gram = walking(&chain, &points, &knock)
-                .reduce(|_| ())
-                .unwrap()
-                .gram;
+            let knock = ExtraColumns::new(vec![Column::StateJump {
+                row: row - 1,
+                state,
+            }]);
+            let gram = walking(&chain, &points, &knock).reduce().unwrap().gram;
             let same = |found: f64, expected: f64| {
                 // Columns are derivatives of the innovations; those of a jump have the other sign.
                 // Rounding of sums of some thousands.
@@ -350,10 +333,47 @@ fn scores_of_jumps_beside_walks_are_those_of_columns() {
             same(score.columns[0][state], -gram[(0, 3)]);
             same(score.columns[1][state], -gram[(1, 3)]);
             same(score.columns[2][state], -gram[(2, 3)]);
-            same(score.information[state][state], gram[(3, 3)]);
+            same(score.information[3 * state], gram[(3, 3)]);
         }
     }
     assert!(jumps.len() == chain.times_s.len() - 1 && VARIANCE[0] > 0.0);
+}
+
+/// A walk of the bias of the angle's sensor, which the states do not notice.
+#[test]
+fn a_walk_that_outputs_depend_on_is_that_of_the_joint_gaussian() {
+    let chain = Chain::measured(3);
+    let points = chain.trajectory();
+    let walks = [Walk {
+        parameter: 0,
+        density: 2e-4,
+    }];
+    let no_columns = none();
+    let pass = chain
+        .linearised(&points, &PRIOR, &[0], &no_columns)
+        .walking(Walks {
+            walks: &walks,
+            changes: &[],
+        });
+    let score = pass.noise_score(&[1.0; 5]).unwrap();
+    let (residuals, mut covariance) = Density { chain: &chain }.outputs_given_parameters();
+    let present = chain.present();
+    for (i, (row, output)) in present.iter().enumerate() {
+        for (j, (other, of)) in present.iter().enumerate() {
+            if (*output, *of) == (0, 0) {
+                let since_s = chain.times_s[*row.min(other)] - chain.times_s[0];
+                covariance[(i, j)] += walks[0].density * since_s;
+            }
+        }
+    }
+    let cholesky = Cholesky::new(covariance).unwrap();
+    let squares = cholesky.solve(&residuals).dot(&residuals);
+    let determinant = 2.0 * cholesky.l().diagonal().map(f64::ln).sum();
+    let constant = score.values as f64 * core::f64::consts::TAU.ln();
+    let expected = -0.5 * (squares + determinant + constant);
+    // Rounding, and covariances of the other noise by differences.
+    let found = score.log_likelihood();
+    assert!((found - expected).abs() < 1e-6, "{found} {expected}");
 }
 
 #[test]
@@ -361,20 +381,21 @@ fn walks_that_cannot_be_are_refused() {
     let chain = Chain::measured(8);
     let points = chain.trajectory();
     let refused = |walk: Walk, active: &[usize], changes: &[f64]| {
-        let pass = Linearisation {
-            walks: Walks {
-                walks: &[walk],
+        let walks = [walk];
+        let no_columns = none();
+        let pass = chain
+            .linearised(&points, &PRIOR, active, &no_columns)
+            .walking(Walks {
+                walks: &walks,
                 changes,
-            },
-            ..chain.linearised(&points, &PRIOR, active, &NoColumns)
-        };
+            });
         assert!(matches!(
-            pass.reduce(|_| ()),
+            pass.reduce(),
             Err(EstimationError::InvalidArgument { .. })
         ));
     };
     let good = WALKS[0];
-    // Not active; without a variance; not one change a row; seen by an output.
+    // Not active; without a variance; not one change a row.
     refused(good, &[3], &[]);
     refused(
         Walk {
@@ -385,12 +406,4 @@ fn walks_that_cannot_be_are_refused() {
         &[],
     );
     refused(good, &ACTIVE, &[0.0; 3]);
-    refused(
-        Walk {
-            parameter: 0,
-            ..good
-        },
-        &[0, 2],
-        &[],
-    );
 }

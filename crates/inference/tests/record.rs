@@ -1,4 +1,4 @@
-//! The batch estimator on a model that has nothing to do with gyros, against dense least squares
+//! Passes over a linearised record of a model that has nothing to do with gyros, against dense least squares
 //! and direct Gaussian densities.
 // Failing here is what tests are for.
 #![cfg(test)]
@@ -7,26 +7,26 @@
     reason = "loops over several matrices by one index read like the equations"
 )]
 
-#[path = "batch/chain.rs"]
+#[path = "record/chain.rs"]
 mod chain;
 #[expect(dead_code, reason = "some constants are those of other tests")]
+#[path = "../../estimation/tests/common/mod.rs"]
 mod common;
-#[path = "batch/density.rs"]
+#[path = "record/density.rs"]
 mod density;
-#[path = "batch/invalid_arguments.rs"]
+#[path = "record/invalid_arguments.rs"]
 mod invalid_arguments;
-#[path = "batch/least_squares.rs"]
+#[path = "record/least_squares.rs"]
 mod least_squares;
-#[path = "batch/noise.rs"]
+#[path = "record/noise.rs"]
 mod noise;
-#[path = "batch/walks.rs"]
+#[path = "record/walks.rs"]
 mod walks;
 
-use chain::{Chain, Disturbances, VARIANCE, solve};
+use chain::{Chain, VARIANCE, disturbances, none, solve};
 use density::Density;
-use gyrocal_estimation::batch::{Linearisation, NoColumns};
 use gyrocal_estimation::{EstimationError, Integration};
-use invalid_arguments::Pass;
+use gyrocal_inference::{KeptRecord, Pass};
 use least_squares::LeastSquares;
 use nalgebra::DMatrix;
 
@@ -37,7 +37,7 @@ const SAME_SIGMAS: f64 = 1e-7;
 fn gauss_newton_is_dense_least_squares() {
     for seed in 0..4 {
         let chain = Chain::measured(seed);
-        let found = solve(&chain, &NoColumns, &[]);
+        let found = solve(&chain, |_| none(), &[]);
         let dense = LeastSquares::new(&chain, &[]).solve();
         assert_same(&found.parameters, &found.covariance, &dense);
         for (point, expected) in found.points.iter().zip(&dense.points) {
@@ -53,9 +53,8 @@ fn gauss_newton_is_dense_least_squares() {
 #[test]
 fn further_columns_are_explicit_parameters() {
     let chain = Chain::measured(7);
-    let disturbances = Disturbances::default();
     let sigma = [0.3, 0.5, 0.2];
-    let found = solve(&chain, &disturbances, &sigma);
+    let found = solve(&chain, disturbances, &sigma);
     let dense = LeastSquares::new(&chain, &sigma).solve();
     assert_eq!(found.parameters.len(), 4 + 3);
     assert_same(&found.parameters, &found.covariance, &dense);
@@ -82,8 +81,8 @@ fn the_likelihood_is_that_of_the_joint_gaussian() {
     let chain = Chain::measured(3);
     let trajectory = chain.trajectory();
     let reduced = chain
-        .linearised(&trajectory, &chain.parameters(), &[], &NoColumns)
-        .reduce(|_| ())
+        .linearised(&trajectory, &chain.parameters(), &[], &none())
+        .reduce()
         .unwrap();
     let (residuals, covariance) = Density { chain: &chain }.outputs_given_parameters();
     assert_eq!(reduced.values, residuals.len());
@@ -94,7 +93,7 @@ fn the_likelihood_is_that_of_the_joint_gaussian() {
     assert!((reduced.gram[(0, 0)] / square - 1.0).abs() < 1e-8);
     assert!((reduced.log_variance - log_determinant).abs() < 1e-7);
     let score = chain
-        .linearised(&trajectory, &chain.parameters(), &[], &NoColumns)
+        .linearised(&trajectory, &chain.parameters(), &[], &none())
         .noise_score(&[1.0; 4])
         .unwrap();
     let count = residuals.len() as f64;
@@ -110,8 +109,8 @@ fn the_cost_of_a_trajectory_counts_prior_noise_and_outputs() {
     let parameters = chain.parameters();
     let cost = |points: &[[f64; 2]]| {
         chain
-            .linearised(points, &parameters, &[], &NoColumns)
-            .reduce(|_| ())
+            .linearised(points, &parameters, &[], &none())
+            .reduce()
             .unwrap()
             .trajectory_cost
     };
@@ -140,9 +139,9 @@ fn results_are_symmetric_to_the_last_bit() {
             &trajectory,
             &chain.parameters(),
             &[0, 1, 2, 3],
-            &Disturbances::default(),
+            &disturbances(&[0.0; 3]),
         )
-        .reduce(|_| ())
+        .reduce()
         .unwrap();
     let size = 1 + 4 + 3;
     assert_eq!(reduced.gram.shape(), (size, size));
@@ -151,8 +150,7 @@ fn results_are_symmetric_to_the_last_bit() {
             assert_eq!(reduced.gram[(i, j)], reduced.gram[(j, i)]);
         }
     }
-    let [[_, upper], [lower, _]] = reduced.last_covariance;
-    assert_eq!(upper, lower);
+    assert_eq!(reduced.last_covariance[1], reduced.last_covariance[2]);
 }
 
 #[test]
@@ -161,7 +159,8 @@ fn the_gram_matrix_is_the_sum_over_what_is_watched() {
     let trajectory = chain.trajectory();
     let mut seen = Vec::new();
     let reduced = chain
-        .linearised(&trajectory, &chain.parameters(), &[0, 2], &NoColumns)
+        .linearised(&trajectory, &chain.parameters(), &[0, 2], &none())
+        .pass()
         .reduce(|whitened| {
             assert!(whitened.deviation >= VARIANCE[whitened.output].sqrt());
             seen.push((whitened.row, whitened.output, whitened.columns.to_vec()));
@@ -184,47 +183,67 @@ fn the_gram_matrix_is_the_sum_over_what_is_watched() {
 }
 
 #[test]
-fn passes_on_a_tape_are_the_same() {
+fn passes_over_a_kept_record_are_the_same() {
     let chain = Chain::measured(8);
     let trajectory = chain.trajectory();
     let (parameters, all) = (chain.parameters(), [0, 1, 2, 3]);
-    let columns = Disturbances {
-        sizes: [0.1, -0.2, 0.05],
+    let columns = disturbances(&[0.1, -0.2, 0.05]);
+    let case = chain.linearised(&trajectory, &parameters, &all, &columns);
+    let kept = KeptRecord::new(&case.trajectory).unwrap();
+    let on_kept = Pass {
+        record: &kept,
+        ..case.pass()
     };
-    let pass = chain.linearised(&trajectory, &parameters, &all, &columns);
-    let (reduced, tape) = pass.reduce_and_keep(|_| ()).unwrap();
-    let on_tape = Linearisation {
-        tape: Some(&tape),
-        ..pass
-    };
-    assert_eq!(pass.reduce(|_| ()).unwrap(), reduced);
-    assert_eq!(on_tape.reduce(|_| ()).unwrap(), reduced);
+    assert_eq!(
+        on_kept.reduce_with_cost(|_| ()).unwrap(),
+        case.reduce().unwrap()
+    );
     let change = [0.01, -0.02, 0.3, 0.02, 0.1, -0.1, 0.03];
     assert_eq!(
-        on_tape.smooth(&change).unwrap(),
-        pass.smooth(&change).unwrap()
+        on_kept.smooth(&change).unwrap(),
+        case.smooth(&change).unwrap()
     );
     let factors = [1.5, 0.5, 2.0, 1.0];
     assert_eq!(
-        on_tape.noise_score(&factors).unwrap(),
-        pass.noise_score(&factors).unwrap()
+        Pass {
+            factors: &factors,
+            ..on_kept
+        }
+        .noise_score()
+        .unwrap(),
+        case.noise_score(&factors).unwrap()
     );
-    // One of another trajectory or of other parameters is refused.
-    for other in [
-        Linearisation {
-            active: &all[1..],
-            ..on_tape
-        },
-        Linearisation {
-            points: &trajectory[1..],
-            ..on_tape
-        },
-    ] {
-        assert!(matches!(
-            other.reduce(|_| ()),
-            Err(EstimationError::InvalidArgument { .. })
-        ));
+    // The first rows and rows that are left out, as if the others had no values.
+    let mut missing = Chain::measured(8);
+    for row in (5..9).chain(20..30) {
+        missing.measured[row] = [f64::NAN; 2];
     }
+    let part = Pass {
+        rows: 20,
+        left_out: &(5..9),
+        ..on_kept
+    };
+    let found = part.reduce(|_| ()).unwrap();
+    let expected = missing
+        .linearised(&trajectory, &parameters, &all, &columns)
+        .reduce()
+        .unwrap();
+    assert_eq!(found.gram, expected.gram);
+    // A parameter that it was not linearised by is refused.
+    let some = chain_without_first(&missing, &trajectory, &parameters, &columns);
+    assert!(matches!(some, Err(EstimationError::InvalidArgument { .. })));
+}
+
+/// A pass with a column of a parameter that the record has no derivatives by.
+fn chain_without_first(
+    chain: &Chain,
+    trajectory: &[[f64; 2]],
+    parameters: &[f64],
+    columns: &gyrocal_inference::ExtraColumns,
+) -> Result<gyrocal_inference::Reduced, EstimationError> {
+    let mut case = chain.linearised(trajectory, parameters, &[0, 1, 2, 3], columns);
+    case.trajectory.wanted = &[1, 2, 3];
+    case.reduce()
 }
 
 #[test]
@@ -232,14 +251,13 @@ fn rules_of_integration_are_followed() {
     let chain = Chain::measured(6);
     let trajectory = chain.trajectory();
     let parameters = chain.parameters();
-    let rk4 = chain.linearised(&trajectory, &parameters, &[], &NoColumns);
-    let cost = |pass: Pass<'_>| pass.reduce(|_| ()).unwrap().trajectory_cost;
+    let no_columns = none();
+    let rk4 = chain.linearised(&trajectory, &parameters, &[], &no_columns);
+    let cost = |case: &chain::Case<'_>| case.reduce().unwrap().trajectory_cost;
     let outputs: f64 = chain.output_squares(&trajectory).iter().sum();
     // The trajectory is that of RK4: by Euler's rule noise must have done what is between them.
-    assert!((cost(rk4) / outputs - 1.0).abs() < 1e-12);
-    let euler = Pass {
-        integration: Integration::EULER,
-        ..rk4
-    };
-    assert!(cost(euler) > 1.01 * outputs);
+    assert!((cost(&rk4) / outputs - 1.0).abs() < 1e-12);
+    let mut euler = rk4.clone();
+    euler.trajectory.integration = Integration::EULER;
+    assert!(cost(&euler) > 1.01 * outputs);
 }

@@ -1,0 +1,55 @@
+//! Inference from a record that is linearised about a trajectory.
+//!
+//! # How it works
+//!
+//! A record is a chain of points of the moving states, tied by the model and its noise, and read by its
+//! outputs. Linearised about a trajectory it is a table of numbers ([`LinearisedRecord`]): for each step
+//! the derivatives of the next states by the states and by the parameters, the covariance that each noise
+//! adds, and what the trajectory differs from the model by (the *defects* of multiple shooting: Bock,
+//! *Recent advances in parameter identification techniques*, 1983); for each row residuals of the outputs
+//! and their derivatives. Sizes are known at run time. Three things make such tables: a generated model in
+//! its moving chart ([`Trajectory`]), a generated plant, an interpreted program.
+//!
+//! What follows knows no model and no chart. Given the parameters, the states are a small Kalman filter;
+//! what they do when a parameter changes is one *sensitivity column* of it. So one pass
+//! ([`Pass::reduce`]) eliminates the states and leaves the Gram matrix of whitened innovation columns: the
+//! information on all parameters at once, with any number of further [`Column`]s at the cost of one
+//! matrix-vector product a step. A second one ([`Pass::smooth`]) gives the correction of every point for a
+//! given change of the parameters (Bryson, Frazier, 1963, whose form needs no inverse of a covariance).
+//! Repeated to convergence this is the Gauss-Newton method on all points and parameters, the iterated
+//! Kalman smoother (Bell, SIAM J. Optim. 4(3), 1994). [`Pass::jumps`] has the score of a sudden change of
+//! the states in every step, [`Pass::noise_score`] the likelihood of the noise with its exact derivatives.
+//!
+//! A parameter may walk at random along the record ([`Walk`]): it is then one more state.
+//!
+//! # What it does not do
+//!
+//! It chooses no parameters, has no priors but that of the first point, and takes no steps.
+
+#![expect(
+    clippy::needless_range_loop,
+    reason = "loops over several matrices by one index read like the equations"
+)]
+
+mod column;
+mod filter;
+mod gram;
+mod jumps;
+mod noise;
+mod pass;
+mod record;
+mod small;
+mod smooth;
+mod step;
+mod trajectory;
+mod walks;
+
+pub use column::{Column, ExtraColumns};
+pub use gram::Gram;
+pub use jumps::JumpScore;
+pub use noise::NoiseScore;
+pub use pass::{Pass, Reduced, Whitened};
+pub use record::{KeptRecord, Layout, LinearisedRecord, LinearisedRows, Start};
+pub use smooth::Smoothed;
+pub use trajectory::{Series, Trajectory};
+pub use walks::{Walk, Walks};
