@@ -3,9 +3,8 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn, SymmetricEigen};
 
-use crate::error::Singular;
 use crate::model::FittedModel;
-use gyrocal_inference::Column;
+use gyrocal_inference::{Column, Singular};
 
 /// A signature of which the fit leaves less than this share cannot be seen.
 const VISIBLE: f64 = 1e-9;

@@ -107,7 +107,6 @@ mod by_fits;
 mod context;
 mod continuation;
 mod curve;
-mod error;
 mod finding;
 mod fitted_stage;
 mod forward;
@@ -146,12 +145,11 @@ mod walks;
 pub use bank::{JointScore, NominalEstimate, ScoreBank};
 pub use context::SearchOptions;
 pub use continuation::{Phase, RecordOffset, continued, continued_shapes, recurs};
-pub use error::Singular;
 pub use finding::{
     Alternative, CONFIDENCE_SET_DEVIANCE, EffectEstimate, ExactEquivalent, Finding, NoneOfThese,
 };
 pub use given::{FittedWith, fit_with};
-pub use gyrocal_inference::{Column, ExtraColumns};
+pub use gyrocal_inference::{Column, ExtraColumns, Singular};
 pub use hypothesis::{Hypothesis, HypothesisSet, Selection, Unavailable, Variant};
 pub use information::{information, sigmas};
 pub use model::{FittedModel, ModelExtension, StateJump};

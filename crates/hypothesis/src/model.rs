@@ -3,11 +3,10 @@
 use gyrocal_scalar::effect::Role;
 use nalgebra::{DMatrix, DVector};
 
-use crate::error::Singular;
 use crate::plant::Plant;
 use crate::rate_noise::{RateNoise, RateNoiseFit};
 use crate::rows::Covariate;
-use gyrocal_inference::{Column, ExtraColumns};
+use gyrocal_inference::{Column, ExtraColumns, Singular};
 
 /// Value of an onset or a time constant that nothing sets.
 const UNSET_SHAPE: f64 = 1.0;

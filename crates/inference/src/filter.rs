@@ -20,6 +20,8 @@ pub(crate) struct Filter {
     pub(crate) cross: Vec<f64>,
     /// Whether the states have any noise.
     is_noisy: bool,
+    /// Memory of the size of the columns, and of that of the covariance.
+    moved: Vec<f64>,
     memory: Vec<f64>,
     gain: Vec<f64>,
 }
@@ -39,7 +41,8 @@ impl Filter {
             whitened: vec![0.0; stride],
             cross: vec![0.0; n],
             is_noisy: is_driven || start.covariance.iter().any(|element| *element != 0.0),
-            memory: vec![0.0; n * stride.max(n)],
+            moved: vec![0.0; n * stride],
+            memory: vec![0.0; n * n],
             gain: vec![0.0; n],
         }
     }
@@ -57,18 +60,20 @@ impl Filter {
     /// Multiplies by the transition and adds the noise of the step; what drives the columns is added by the
     /// caller.
     pub(crate) fn predict(&mut self, transition: &[f64], noise: &[f64]) {
-        let size = self.columns.len();
-        product(transition, &self.columns, self.stride, &mut self.memory);
-        self.columns.copy_from_slice(&self.memory[..size]);
+        match self.states {
+            3 => self.predict_of(3, transition, noise),
+            states => self.predict_of(states, transition, noise),
+        }
+    }
+
+    #[inline(always)]
+    fn predict_of(&mut self, n: usize, transition: &[f64], noise: &[f64]) {
+        product(transition, &self.columns, n, self.stride, &mut self.moved);
+        core::mem::swap(&mut self.columns, &mut self.moved);
         if !self.is_noisy {
             return;
         }
-        sandwich(
-            transition,
-            &mut self.covariance,
-            self.states,
-            &mut self.memory,
-        );
+        sandwich(transition, &mut self.covariance, n, &mut self.memory);
         for (sum, value) in self.covariance.iter_mut().zip(noise) {
             *sum += value;
         }
@@ -82,7 +87,21 @@ impl Filter {
         jacobian: &[f64],
         variance: f64,
     ) -> Result<f64, EstimationError> {
+        match self.states {
+            3 => self.update_of(3, jacobian, variance),
+            states => self.update_of(states, jacobian, variance),
+        }
+    }
+
+    #[inline(always)]
+    fn update_of(
+        &mut self,
+        n: usize,
+        jacobian: &[f64],
+        variance: f64,
+    ) -> Result<f64, EstimationError> {
         let stride = self.stride;
+        let jacobian = &jacobian[..n];
         for (by, row) in jacobian.iter().zip(self.columns.chunks_exact(stride)) {
             if *by != 0.0 {
                 for (innovation, value) in self.whitened.iter_mut().zip(row) {
@@ -92,8 +111,9 @@ impl Filter {
         }
         let mut total = variance;
         if self.is_noisy {
-            apply(&self.covariance, jacobian, &mut self.cross);
-            total += dot(jacobian, &self.cross);
+            let cross = &mut self.cross[..n];
+            apply(&self.covariance[..n * n], jacobian, cross);
+            total += dot(jacobian, cross);
         }
         if !(total.is_finite() && total > 0.0) {
             return Err(EstimationError::NotFinite {
@@ -116,7 +136,7 @@ impl Filter {
                 }
             }
         }
-        self.reduce_covariance(jacobian, variance, total);
+        self.reduce_covariance(n, jacobian, variance, total);
         Ok(deviation)
     }
 
@@ -125,33 +145,34 @@ impl Filter {
     /// Joseph's form squares I − K H, and with it what rounding has left in P: where a direction
     /// that is nearly unknown is seen at a small angle, as the azimuth is near a pole, elements of K H
     /// reach 1e5 and that is more than is left of P. What is taken from P is then taken once.
-    fn reduce_covariance(&mut self, jacobian: &[f64], variance: f64, total: f64) {
-        let n = self.states;
-        for (gain, cross) in self.gain.iter_mut().zip(&self.cross) {
+    #[inline(always)]
+    fn reduce_covariance(&mut self, n: usize, jacobian: &[f64], variance: f64, total: f64) {
+        let (cross, gain) = (&self.cross[..n], &mut self.gain[..n]);
+        let (covariance, excess) = (&mut self.covariance[..n * n], &mut self.memory[..n]);
+        for (gain, cross) in gain.iter_mut().zip(cross) {
             *gain = cross / total;
         }
         let most = |all: &[f64]| all.iter().fold(0.0, |most: f64, one| most.max(one.abs()));
-        let is_large = most(&self.gain) * most(jacobian) > LARGE_GAIN;
-        for (row, gain) in self.covariance.chunks_exact_mut(n).zip(&self.gain) {
-            for (value, cross) in row.iter_mut().zip(&self.cross) {
-                *value -= gain * cross;
+        let is_large = most(gain) * most(jacobian) > LARGE_GAIN;
+        for i in 0..n {
+            for j in 0..n {
+                covariance[i * n + j] -= gain[i] * cross[j];
             }
         }
         if is_large {
             return;
         }
         // (I − K H) P Hᵀ − K R, which is zero but for rounding: rounding cannot take more from P than there is.
-        apply(&self.covariance, jacobian, &mut self.memory[..n]);
-        for (excess, gain) in self.memory.iter_mut().zip(&self.gain) {
+        apply(covariance, jacobian, excess);
+        for (excess, gain) in excess.iter_mut().zip(&*gain) {
             *excess -= gain * variance;
         }
         for i in 0..n {
             for j in 0..=i {
-                let both = self.covariance[i * n + j] + self.covariance[j * n + i];
-                let excess = self.memory[i] * self.gain[j] + self.memory[j] * self.gain[i];
-                let sum = 0.5 * (both - excess);
-                self.covariance[i * n + j] = sum;
-                self.covariance[j * n + i] = sum;
+                let both = covariance[i * n + j] + covariance[j * n + i];
+                let sum = 0.5 * (both - (excess[i] * gain[j] + excess[j] * gain[i]));
+                covariance[i * n + j] = sum;
+                covariance[j * n + i] = sum;
             }
         }
     }
@@ -186,7 +207,7 @@ mod tests {
             .map(|i| unknown * angle * u[i] + known * v[i])
             .collect();
         let total = unknown * angle * angle + known + noise;
-        filter.reduce_covariance(&jacobian, noise, total);
+        filter.reduce_covariance(2, &jacobian, noise, total);
         let along = |a: [f64; 2], b: [f64; 2]| -> f64 {
             (0..2)
                 .map(|i| {

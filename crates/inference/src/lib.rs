@@ -32,12 +32,14 @@
 )]
 
 mod column;
+mod error;
 mod filter;
 mod gram;
 mod jumps;
 mod noise;
 mod pass;
 mod record;
+mod restricted;
 mod small;
 mod smooth;
 mod step;
@@ -45,11 +47,13 @@ mod trajectory;
 mod walks;
 
 pub use column::{Column, ExtraColumns};
+pub use error::Singular;
 pub use gram::Gram;
 pub use jumps::JumpScore;
 pub use noise::NoiseScore;
 pub use pass::{Pass, Reduced, Whitened};
 pub use record::{KeptRecord, Layout, LinearisedRecord, LinearisedRows, Start};
+pub use restricted::{Asked, Restricted, RestrictedAt, UnknownNoise};
 pub use smooth::Smoothed;
 pub use trajectory::{Series, Trajectory};
 pub use walks::{Walk, Walks};

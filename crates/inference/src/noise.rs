@@ -74,6 +74,7 @@ struct NoiseFilter {
     d_cross: Vec<f64>,
     /// Gain of the last output.
     gains: Vec<f64>,
+    moved: Vec<f64>,
     memory: Vec<f64>,
     sums: Sums,
 }
@@ -179,7 +180,8 @@ impl NoiseFilter {
             d_rows: vec![0.0; derivatives * stride],
             d_cross: vec![0.0; states],
             gains: vec![0.0; states],
-            memory: vec![0.0; states * states.max(derivatives * stride)],
+            moved: vec![0.0; states * derivatives * stride],
+            memory: vec![0.0; states * states],
             sums: Sums::new(stride, derivatives),
         }
     }
@@ -234,9 +236,8 @@ impl Watch for NoiseFilter {
             return Ok(());
         }
         let (n, width) = (self.states, self.d_rows.len());
-        product(made.by_states, &self.columns, width, &mut self.memory);
-        let size = self.columns.len();
-        self.columns.copy_from_slice(&self.memory[..size]);
+        product(made.by_states, &self.columns, n, width, &mut self.moved);
+        core::mem::swap(&mut self.columns, &mut self.moved);
         for (k, own) in (self.first..).zip(&mut self.each) {
             sandwich(made.by_states, &mut own.covariance, n, &mut self.memory);
             if let Some(noise) = k.checked_sub(self.outputs) {

@@ -1,27 +1,32 @@
 //! Small matrices of sizes known at run time, by rows.
+//!
+//! A caller that gives a constant for the number of rows has the loops unrolled.
 
-/// to = left · right; `left` is square with as many columns as `right` has rows, each of `width` numbers.
-pub(crate) fn product(left: &[f64], right: &[f64], width: usize, to: &mut [f64]) {
-    let n = right.len() / width.max(1);
-    for (i, target) in to.chunks_exact_mut(width).take(n).enumerate() {
-        target.fill(0.0);
-        for (by, row) in left[i * n..(i + 1) * n]
-            .iter()
-            .zip(right.chunks_exact(width))
-        {
-            if *by == 0.0 {
-                continue;
-            }
-            for (value, right) in target.iter_mut().zip(row) {
-                *value += by * right;
+/// to = left · right; `left` is n × n, `right` has n rows of `width` numbers.
+#[inline(always)]
+pub(crate) fn product(left: &[f64], right: &[f64], n: usize, width: usize, to: &mut [f64]) {
+    for i in 0..n {
+        let target = &mut to[i * width..(i + 1) * width];
+        let by = &left[i * n..(i + 1) * n];
+        for (value, right) in target.iter_mut().zip(&right[..width]) {
+            *value = by[0] * right;
+        }
+        for j in 1..n {
+            // Walks, and states that others do not feel.
+            if by[j] != 0.0 {
+                let row = &right[j * width..(j + 1) * width];
+                for (value, right) in target.iter_mut().zip(row) {
+                    *value += by[j] * right;
+                }
             }
         }
     }
 }
 
 /// matrix = map · matrix · mapᵀ of a symmetric matrix, symmetric to the last bit; `memory` has its size.
+#[inline(always)]
 pub(crate) fn sandwich(map: &[f64], matrix: &mut [f64], n: usize, memory: &mut [f64]) {
-    product(map, matrix, n, memory);
+    product(map, matrix, n, n, memory);
     for i in 0..n {
         for j in 0..=i {
             let sum = dot(&memory[i * n..(i + 1) * n], &map[j * n..(j + 1) * n]);
@@ -32,18 +37,22 @@ pub(crate) fn sandwich(map: &[f64], matrix: &mut [f64], n: usize, memory: &mut [
 }
 
 /// The scalar product.
+#[inline(always)]
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// to = matrix · vector.
+#[inline(always)]
 pub(crate) fn apply(matrix: &[f64], vector: &[f64], to: &mut [f64]) {
-    for (value, row) in to.iter_mut().zip(matrix.chunks_exact(vector.len())) {
-        *value = dot(row, vector);
+    let n = vector.len();
+    for (i, value) in to.iter_mut().enumerate() {
+        *value = dot(&matrix[i * n..(i + 1) * n], vector);
     }
 }
 
 /// vector = matrixᵀ · vector.
+#[inline(always)]
 pub(crate) fn apply_transposed(matrix: &[f64], vector: &mut [f64], memory: &mut [f64]) {
     memory.fill(0.0);
     for (value, row) in vector.iter().zip(matrix.chunks_exact(memory.len())) {
@@ -55,6 +64,7 @@ pub(crate) fn apply_transposed(matrix: &[f64], vector: &mut [f64], memory: &mut 
 }
 
 /// Adds a lower triangle times a factor to a symmetric matrix.
+#[inline(always)]
 pub(crate) fn add_triangle(matrix: &mut [f64], n: usize, triangle: &[f64], factor: f64) {
     let mut elements = triangle.iter();
     for i in 0..n {

@@ -1,7 +1,6 @@
 //! Restricted likelihood of the gyros' noise: white noise and random walks.
 
 mod likelihood;
-mod steps;
 
 use gyrocal_hypothesis::{RateNoise, RateNoiseFit};
 use gyrocal_inference::Walk;

@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, DVector};
 use super::FittedPlant;
 use crate::error::PlantError;
 use crate::lines::of_parameters;
-use crate::noise::Restricted;
+use crate::noise::NoiseProblem;
 
 /// Smallest range of a covariate that a dependence on it is looked for over, as a share of its size.
 const LEAST_RANGE: f64 = 1e-6;
@@ -80,13 +80,15 @@ impl FittedModel for FittedPlant {
         absent: &[usize],
     ) -> Result<RateNoiseFit, PlantError> {
         let (lines, sigmas) = (self.lines(), self.problem.sigmas(&self.extension));
-        let restricted = Restricted::new(
-            &self.problem,
-            &self.solution.lin,
-            (&lines, &sigmas),
-            (&self.solution.at.values, absent),
-        )?;
-        let fit = restricted.maximise(&self.ratios)?;
+        let unknown = NoiseProblem {
+            problem: &self.problem,
+            lin: &self.solution.lin,
+            lines: &lines,
+            sigmas: &sigmas,
+            values: &self.solution.at.values,
+            absent,
+        };
+        let fit = unknown.maximise(&self.ratios)?;
         let rates = self.plant().rates.len();
         // Scores of different channels are compared as they are: see `RateNoiseFit::white_sigma`, whose
         // degrees of freedom would correct those of rates alone.

@@ -1,14 +1,13 @@
 //! The restricted likelihood of the gyros' noise and its maximum.
 
-mod eliminated;
-
-use eliminated::Eliminated;
 use gyrocal_hypothesis::RateNoiseFit;
-use gyrocal_inference::{NoiseScore, Pass, Walk, Walks};
+use gyrocal_inference::{
+    Asked, NoiseScore, Pass, Restricted, RestrictedAt, UnknownNoise, Walk, Walks,
+};
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-use super::steps::{bounded, moved, scale};
 use super::{GYRO_NOISE_PRIOR_SIGMA, NO_WALK};
+use crate::coefficients::PARAMETERS;
 use crate::error::CalibrationError;
 use crate::fitted_platform::several::add_score;
 use crate::fitted_platform::{AXES, FittedPlatform, S_PER_H};
@@ -20,16 +19,9 @@ use crate::work;
 /// each step by the same share, and after ten less than a unit of the log-likelihood is left.
 const MAX_STEPS: usize = 10;
 
-/// Most halvings of a step.
-const MAX_HALVINGS: usize = 8;
-
 /// Gain of the log-likelihood that a step expects below which it is not made: a likelihood ratio is
 /// then good to some hundredths, and a logarithm to a fifth of its standard deviation.
 const LEAST_GAIN: f64 = 0.02;
-
-/// Precision of the logarithm of the variance of a walk that keeps a step finite where the record says
-/// nothing of it.
-const DAMPING: f64 = 1e-3;
 
 /// Precision of the logarithm of the variance of a gyro's white noise before the record.
 const PRIOR_PRECISION: f64 = 0.25 / (GYRO_NOISE_PRIOR_SIGMA * GYRO_NOISE_PRIOR_SIGMA);
@@ -37,17 +29,6 @@ const PRIOR_PRECISION: f64 = 0.25 / (GYRO_NOISE_PRIOR_SIGMA * GYRO_NOISE_PRIOR_S
 /// Densities that an estimate starts from, over that of a walk that does over the record as much as
 /// the declared white noise.
 const STARTS: [f64; 3] = [3.0, 100.0, 3000.0];
-
-/// The likelihood at one point.
-pub(super) struct At {
-    pub(super) value: f64,
-    /// One, and the change of every unknown of the fit.
-    solution: DVector<f64>,
-    gradient: DVector<f64>,
-    pub(super) information: DMatrix<f64>,
-    /// The information that the unknowns of the fit leave: less its projection on them.
-    left: DMatrix<f64>,
-}
 
 /// The unknown logarithms of variances: the white noise of each gyro over the fit's, then densities
 /// of walks.
@@ -99,7 +80,7 @@ impl Likelihood<'_, '_> {
     }
 
     /// Fisher's scoring from the noise of the fit.
-    pub(super) fn maximise(&self) -> Result<(DVector<f64>, At), CalibrationError> {
+    pub(super) fn maximise(&self) -> Result<(DVector<f64>, RestrictedAt), CalibrationError> {
         self.maximise_to(LEAST_GAIN)
     }
 
@@ -107,47 +88,55 @@ impl Likelihood<'_, '_> {
     pub(super) fn maximise_to(
         &self,
         least_gain: f64,
-    ) -> Result<(DVector<f64>, At), CalibrationError> {
-        let mut logarithms = DVector::zeros(AXES + self.free.len());
+    ) -> Result<(DVector<f64>, RestrictedAt), CalibrationError> {
+        let mut start = DVector::zeros(AXES + self.free.len());
         for axis in self.held {
-            logarithms[*axis] = -2.0 * self.fitted.noise.gyro_ratio[*axis].ln();
+            start[*axis] = -2.0 * self.fitted.noise.gyro_ratio[*axis].ln();
         }
-        let mut at = self.at(&logarithms, None)?;
-        for _ in 0..MAX_STEPS {
-            let by = scale(&logarithms);
-            let gradient = at.gradient.component_mul(&by);
-            let information = at.left.component_mul(&(&by * by.transpose()));
-            let Some(cholesky) = Cholesky::new(information) else {
-                break;
-            };
-            let mut step = bounded(cholesky.solve(&gradient), &logarithms);
-            if 0.5 * step.dot(&gradient) < least_gain {
-                break;
+        let mut score = |asked: Asked<'_>| self.score(asked);
+        self.with_restricted(|restricted| {
+            restricted.maximise(start, (least_gain, MAX_STEPS), &mut score)
+        })
+    }
+
+    /// The unknowns of the fit and of the noise.
+    fn with_restricted<R>(&self, of: impl FnOnce(&Restricted<'_>) -> R) -> R {
+        let fitted = self.fitted;
+        let unknowns = &fitted.problem.unknowns;
+        let sigmas: Vec<f64> = unknowns.iter().map(|unknown| unknown.sigma).collect();
+        let first = if self.integrates_effects {
+            fitted.shared
+        } else {
+            PARAMETERS + fitted.nuisances()
+        };
+        let gyros = (0..AXES).map(|axis| {
+            let believed = fitted.noise.gyro_ratio[axis];
+            UnknownNoise {
+                factor: AXES + axis,
+                prior: Some((-2.0 * believed.ln(), PRIOR_PRECISION)),
+                is_held: self.held.contains(&axis),
             }
-            let mut halvings = 0;
-            loop {
-                let next = moved(&logarithms, &step);
-                // A step may lead to where the filter leaves the numbers: it was too long.
-                if let Ok(found) = self.at(&next, Some(&at.solution))
-                    && found.value >= at.value
-                {
-                    (logarithms, at) = (next, found);
-                    break;
-                }
-                halvings += 1;
-                if halvings > MAX_HALVINGS {
-                    return Ok((logarithms, at));
-                }
-                step *= 0.5;
-            }
-        }
-        Ok((logarithms, at))
+        });
+        let walks = self.free.iter().map(|place| UnknownNoise {
+            factor: 2 * AXES + place,
+            prior: None,
+            is_held: false,
+        });
+        of(&Restricted {
+            values: &fitted.problem.values,
+            sigmas: &sigmas,
+            // Coefficients, what the bench declares uncertain, and the offsets of each turn-on; all, if effects
+            // are.
+            integrated: (0..first).chain(fitted.shared..unknowns.len()).collect(),
+            absent: self.absent,
+            noises: gyros.chain(walks).collect(),
+        })
     }
 
     pub(super) fn result(
         &self,
         logarithms: &DVector<f64>,
-        at: &At,
+        at: &RestrictedAt,
     ) -> Result<RateNoiseFit, CalibrationError> {
         let sigma = Cholesky::new(at.information.clone())
             .ok_or(CalibrationError::NotPositiveDefinite)?
@@ -191,14 +180,14 @@ impl Likelihood<'_, '_> {
         factors
     }
 
-    /// The score of the rows of all records, with Gram matrices of the unknowns of the fit. `first` is the
-    /// first factor whose derivatives are wanted. The information is that at a `solution` of the unknowns.
-    fn score(
-        &self,
-        factors: &[f64],
-        first: usize,
-        solution: Option<&DVector<f64>>,
-    ) -> Result<NoiseScore, CalibrationError> {
+    /// The score of the rows of all records, with Gram matrices of the unknowns of the fit.
+    fn score(&self, asked: Asked<'_>) -> Result<NoiseScore, CalibrationError> {
+        let factors = self.factors(asked.logarithms);
+        let first = if asked.with_derivatives {
+            AXES
+        } else {
+            usize::MAX
+        };
         let problem = &self.fitted.problem;
         let mut total = None;
         for (run, rows) in self.fitted.record_rows().into_iter().enumerate() {
@@ -214,10 +203,10 @@ impl Likelihood<'_, '_> {
             };
             let parameters = problem.parameters(run);
             let columns = leg.column_unknowns();
-            let change: Vec<f64> = solution.map_or_else(Vec::new, |solution| {
+            let change: Vec<f64> = asked.changes.map_or_else(Vec::new, |changes| {
                 let of_column = |unknowns: &&[usize]| {
                     let unknowns = unknowns.iter();
-                    unknowns.map(|unknown| solution[unknown + 1]).sum()
+                    unknowns.map(|unknown| changes[*unknown]).sum()
                 };
                 columns.iter().map(of_column).collect()
             });
@@ -229,7 +218,7 @@ impl Likelihood<'_, '_> {
                             walks: &self.walks,
                             changes,
                         },
-                        factors,
+                        factors: &factors,
                         ..linearised.on(self.fitted.kept(run))
                     }
                     .noise_score_of_columns(first, &change)
@@ -246,97 +235,27 @@ impl Likelihood<'_, '_> {
     }
 
     pub(super) fn value(&self, logarithms: &[f64]) -> Result<f64, CalibrationError> {
-        let score = self.score(&self.factors(logarithms), usize::MAX, None)?;
-        Ok(self.restricted(&score, logarithms)?.value)
-    }
-
-    /// The likelihood and its derivatives, with the information at a `solution` of the unknowns.
-    fn at(
-        &self,
-        logarithms: &DVector<f64>,
-        solution: Option<&DVector<f64>>,
-    ) -> Result<At, CalibrationError> {
-        let score = self.score(&self.factors(logarithms.as_slice()), AXES, solution)?;
-        let eliminated = self.restricted(&score, logarithms.as_slice())?;
-        let left = self.left(&score, &eliminated);
-        let Eliminated {
-            value,
-            solution,
-            inverse,
-            ..
-        } = eliminated;
-        let unknowns = self.unknowns();
-        let integrated = self.integrated();
-        let believed = self.fitted.noise.gyro_ratio;
-        let mut gradient = DVector::zeros(unknowns.len());
-        for (index, unknown) in unknowns.iter().enumerate() {
-            let gram = &score.d_gram[*unknown];
-            let squares = (gram * &solution).dot(&solution);
-            let places: Vec<usize> = integrated.iter().map(|place| place + 1).collect();
-            let determinant = gram
-                .select_rows(&places)
-                .select_columns(&places)
-                .component_mul(&inverse)
-                .sum();
-            gradient[index] = -0.5 * (score.d_log_variance[*unknown] + squares + determinant);
-            if index < AXES {
-                let off = logarithms[index] + 2.0 * believed[index].ln();
-                gradient[index] -= PRIOR_PRECISION * off;
-            }
-        }
-        for axis in self.held {
-            gradient[*axis] = 0.0;
-        }
-        Ok(At {
-            value,
-            solution,
-            gradient,
-            information: self.information(&score),
-            left,
-        })
-    }
-
-    /// Places of the unknowns in a score, after the noise of the outputs: inputs, walks.
-    fn unknowns(&self) -> Vec<usize> {
-        (AXES..2 * AXES)
-            .chain(self.free.iter().map(|place| 2 * AXES + place))
-            .collect()
-    }
-
-    /// Fisher's information on the unknowns, with the prior.
-    fn information(&self, score: &NoiseScore) -> DMatrix<f64> {
-        let unknowns = self.unknowns();
-        let stride = score.d_log_variance.len();
-        let mut information = DMatrix::from_fn(unknowns.len(), unknowns.len(), |i, j| {
-            score.information[unknowns[i] * stride + unknowns[j]]
-        });
-        for index in 0..unknowns.len() {
-            information[(index, index)] += if index < AXES {
-                PRIOR_PRECISION
-            } else {
-                DAMPING
-            };
-        }
-        for axis in self.held {
-            information.row_mut(*axis).fill(0.0);
-            information.column_mut(*axis).fill(0.0);
-            information[(*axis, *axis)] = 1.0;
-        }
-        information
+        let mut score = |asked: Asked<'_>| self.score(asked);
+        self.with_restricted(|restricted| restricted.value(logarithms, &mut score))
     }
 
     /// Information on the unknown noise at the noise of the fit, and the derivatives of the information on
     /// the unknowns of the fit by each of its logarithms.
     pub(super) fn at_fit(&self) -> Result<(DMatrix<f64>, Vec<DMatrix<f64>>), CalibrationError> {
-        let factors = self.factors(&vec![0.0; AXES + self.free.len()]);
-        let score = self.score(&factors, AXES, None)?;
+        let score = self.score(Asked {
+            logarithms: &vec![0.0; AXES + self.free.len()],
+            with_derivatives: true,
+            changes: None,
+        })?;
         let count = self.fitted.problem.unknowns.len();
-        let derivative = |unknown: &usize| {
-            let gram = &score.d_gram[*unknown];
+        let derivative = |noise: &UnknownNoise| {
+            let gram = &score.d_gram[noise.factor];
             gram.view((1, 1), (count, count)).into_owned()
         };
-        let derivatives = self.unknowns().iter().map(derivative).collect();
-        Ok((self.information(&score), derivatives))
+        self.with_restricted(|restricted| {
+            let derivatives = restricted.noises.iter().map(derivative).collect();
+            Ok((restricted.information(&score), derivatives))
+        })
     }
 
     /// Gram matrix of the unknowns of the fit from that of the columns of a pass.

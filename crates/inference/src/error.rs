@@ -1,4 +1,4 @@
-//! Errors of score tests.
+//! Errors of inference.
 
 /// An information matrix that is not positive definite: some unknowns are not observable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
