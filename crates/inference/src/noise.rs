@@ -232,10 +232,26 @@ impl NoiseFilter {
 
 impl Watch for NoiseFilter {
     fn step(&mut self, made: &Made<'_>) -> Result<(), EstimationError> {
-        if self.each.is_empty() {
-            return Ok(());
+        match self.states {
+            _ if self.each.is_empty() => {}
+            3 => self.step_of(3, made),
+            states => self.step_of(states, made),
         }
-        let (n, width) = (self.states, self.d_rows.len());
+        Ok(())
+    }
+
+    fn take(&mut self, taken: &Taken<'_>) {
+        match self.states {
+            3 => self.take_of(3, taken),
+            states => self.take_of(states, taken),
+        }
+    }
+}
+
+impl NoiseFilter {
+    #[inline(always)]
+    fn step_of(&mut self, n: usize, made: &Made<'_>) {
+        let width = self.d_rows.len();
         product(made.by_states, &self.columns, n, width, &mut self.moved);
         core::mem::swap(&mut self.columns, &mut self.moved);
         for (k, own) in (self.first..).zip(&mut self.each) {
@@ -245,10 +261,11 @@ impl Watch for NoiseFilter {
                 add_triangle(&mut own.covariance, n, share, self.factors[noise]);
             }
         }
-        Ok(())
     }
 
-    fn take(&mut self, taken: &Taken<'_>) {
+    #[inline(always)]
+    fn take_of(&mut self, n: usize, taken: &Taken<'_>) {
+        let (jacobian, cross) = (&taken.jacobian[..n], &taken.cross[..n]);
         let whitened = &taken.whitened;
         let deviation = whitened.deviation;
         let total = deviation * deviation;
@@ -274,8 +291,9 @@ impl Watch for NoiseFilter {
             for (sum, column) in with_row.iter_mut().zip(whitened.columns) {
                 *sum += own.innovation * per_deviation * column;
             }
-            apply(&own.covariance, taken.jacobian, &mut self.d_cross);
-            let d_total = d_noise + dot(taken.jacobian, &self.d_cross);
+            let d_cross = &mut self.d_cross[..n];
+            apply(&own.covariance[..n * n], jacobian, d_cross);
+            let d_total = d_noise + dot(jacobian, d_cross);
             own.variance = d_total * reciprocal;
             let rows = self.columns.chunks_exact_mut(width);
             for ((row, gain), d_cross) in rows.zip(&self.gains).zip(&self.d_cross) {
@@ -285,7 +303,7 @@ impl Watch for NoiseFilter {
                     *value += innovation * column + gain * own;
                 }
             }
-            own.subtract(taken.cross, &self.gains, &self.d_cross);
+            own.subtract(n, cross, &self.gains, &self.d_cross);
             self.score.d_log_variance[k] += own.variance;
             // Of the whitened row w = v / s: v' / s - w s' / s.
             let half = 0.5 * own.variance;
@@ -300,14 +318,16 @@ impl Watch for NoiseFilter {
 
 impl Derivative {
     /// The derivative of - c cᵀ / S, c being the covariance with the output and `gains` c / S.
-    fn subtract(&mut self, cross: &[f64], gains: &[f64], d_cross: &[f64]) {
-        let n = cross.len();
+    #[inline(always)]
+    fn subtract(&mut self, n: usize, cross: &[f64], gains: &[f64], d_cross: &[f64]) {
+        let (cross, gains, d_cross) = (&cross[..n], &gains[..n], &d_cross[..n]);
+        let covariance = &mut self.covariance[..n * n];
         for i in 0..n {
             for j in 0..=i {
                 let left = d_cross[j] - cross[j] * self.variance;
                 let change = d_cross[i] * gains[j] + gains[i] * left;
-                self.covariance[i * n + j] -= change;
-                self.covariance[j * n + i] = self.covariance[i * n + j];
+                covariance[i * n + j] -= change;
+                covariance[j * n + i] = covariance[i * n + j];
             }
         }
     }

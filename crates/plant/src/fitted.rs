@@ -210,7 +210,13 @@ impl FittedPlant {
         start: Iterate,
     ) -> Result<Self, PlantError> {
         let solver = Solver::new(&self.problem, extension, self.problem.noise(&ratios));
-        let solution = solver.solve(start)?;
+        // A rival that steps on the trajectory do not reach keeps its score, unless the model itself needed others.
+        let mut solution = if self.solution.is_damped {
+            solver.solve(start)?
+        } else {
+            solver.on_trajectory(start)?
+        };
+        solution.is_damped |= self.solution.is_damped;
         let problem = Arc::clone(&self.problem);
         let starts = self.starts;
         Ok(Self::of(

@@ -4,6 +4,8 @@
 //! astray within a record, or that is unstable, is still led by its data at every row. What no noise
 //! explains of a step is a defect, which a penalty larger than its multiplier removes.
 
+mod damped;
+
 use std::sync::OnceLock;
 
 use gyrocal_hypothesis::{Column, ModelExtension};
@@ -57,6 +59,8 @@ pub(crate) struct Solution {
     /// Covariance of the unknowns.
     pub(crate) covariance: DMatrix<f64>,
     pub(crate) cost: f64,
+    /// Whether damped steps led to it.
+    pub(crate) is_damped: bool,
 }
 
 /// A model to be fitted.
@@ -120,8 +124,21 @@ impl<'a> Solver<'a> {
         )
     }
 
-    /// Steps until none is promised to gain.
+    /// Steps on trajectory and unknowns until none is promised to gain. Where these fail and the states have no noise,
+    /// damped steps on simulations go on.
     pub(crate) fn solve(&self, start: Iterate) -> Result<Solution, PlantError> {
+        let mut values = start.values.clone();
+        values.resize(self.lines.len(), 0.0);
+        match self.on_trajectory(start) {
+            Err(PlantError::NoFit { .. } | PlantError::Singular) if self.is_free() => {
+                self.damped(&values)
+            }
+            other => other,
+        }
+    }
+
+    /// Without damped steps.
+    pub(crate) fn on_trajectory(&self, start: Iterate) -> Result<Solution, PlantError> {
         let mut dynamics = self.dynamics();
         let mut at = start;
         at.values.resize(self.lines.len(), 0.0);
@@ -155,6 +172,7 @@ impl<'a> Solver<'a> {
                         cost: step.promised,
                         lin,
                         whole: OnceLock::new(),
+                        is_damped: false,
                         at,
                     });
                 }
@@ -203,7 +221,6 @@ impl<'a> Solver<'a> {
         step: &Step,
         now: f64,
     ) -> Option<Iterate> {
-        let is_free = lin.rows.layout.noises == 0 && self.noise.loose.is_empty();
         let mut share = 1.0;
         for _ in 0..MAX_HALVINGS {
             let moved = |(old, change): (&f64, &f64)| old + share * change;
@@ -216,7 +233,7 @@ impl<'a> Solver<'a> {
             let points: Vec<f64> = at.points.iter().zip(&step.corrections).map(moved).collect();
             let course = self.course(&values);
             let mut tried = vec![points];
-            if is_free {
+            if self.is_free() {
                 // Without noise a simulation is the trajectory, where it stays near.
                 tried.push(dynamics.simulate(&course, &self.problem.initial(&values)));
             }

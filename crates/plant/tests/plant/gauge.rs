@@ -1,10 +1,11 @@
 //! Gauges, weak excitation, and inputs that are refused in words.
 
 use gyrocal_answer::write_text;
-use gyrocal_plant::{ColumnMap, FittedPlant, SearchOptions, diagnose};
+use gyrocal_plant::{ColumnMap, FittedPlant, LoadedPlant, SearchOptions, diagnose};
 use gyrocal_truth::plant::{Kind, Setting, simulate};
+use serde_json::Value;
 
-use crate::{loaded, record};
+use crate::{example, loaded, record};
 
 #[test]
 fn the_scale_of_the_unmeasured_tank_is_a_gauge() {
@@ -25,6 +26,44 @@ fn the_scale_of_the_unmeasured_tank_is_a_gauge() {
         assert!(names.contains(&name), "{names:?}");
     }
     assert!(gyrocal_words::plant::direction(&directions[0]).starts_with("No record"));
+}
+
+/// A plant of which nothing is said of its initial states before a record.
+fn without_sigmas(kind: Kind) -> LoadedPlant {
+    let text = std::fs::read_to_string(example(kind, "plant.json")).unwrap();
+    let mut program: Value = serde_json::from_str(&text).unwrap();
+    let tables = program["tables"].as_array_mut().unwrap();
+    let states = tables
+        .iter_mut()
+        .find(|table| table["name"] == "plant_states");
+    for row in states.unwrap()["rows"].as_array_mut().unwrap() {
+        // The last column, as the declaration writes it where `sigma` is left out.
+        *row.as_array_mut().unwrap().last_mut().unwrap() = Value::from(0.0);
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("plant.json");
+    std::fs::write(&path, program.to_string()).unwrap();
+    LoadedPlant::read(&path).unwrap()
+}
+
+/// Without standard deviations of the states nothing bounds the gauge: a solver that inverts the information stops.
+#[test]
+fn a_gauge_is_held_where_nothing_is_known_of_the_states() {
+    let plant = without_sigmas(Kind::Tanks);
+    let bounded = loaded(Kind::Tanks);
+    for seed in 3..6 {
+        let setting = Setting::random(Kind::Tanks, seed, 300);
+        let record = record(&plant, &setting);
+        let fit = FittedPlant::nominal(&plant, record.clone(), &[]).unwrap();
+        let (held, directions) = fit.to_hold().unwrap();
+        assert_eq!((held.len(), directions.len()), (1, 1), "{directions:?}");
+        assert!(directions[0].is_gauge, "{directions:?}");
+        let own = FittedPlant::nominal(&plant, record.clone(), &held).unwrap();
+        let known = FittedPlant::nominal(&bounded, record, &held).unwrap();
+        // With the gauge held, priors of a metre change the fit by little.
+        let more = own.deviance() - known.deviance();
+        assert!((-3.0..0.5).contains(&more), "{seed}: {more}");
+    }
 }
 
 #[test]

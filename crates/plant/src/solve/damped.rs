@@ -1,0 +1,190 @@
+//! The fit of a plant without noise by damped steps on simulations (Levenberg, Marquardt): from where steps on
+//! trajectories do not lower the cost, or a record does not determine all unknowns.
+
+use std::sync::OnceLock;
+
+use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
+
+use super::{CONVERGED, ENOUGH, Iterate, PATIENCE, STALLED, Solution, Solver, no_fit};
+use crate::dynamics::{Dynamics, Linearised, reduce};
+use crate::error::PlantError;
+
+/// Most steps.
+const MAX_STEPS: usize = 100;
+
+/// First damping, its changes after a step that fails and one that does not, and the largest that is tried.
+const FIRST: f64 = 1e-3;
+const MORE: f64 = 8.0;
+const LESS: f64 = 0.1;
+const MOST: f64 = 1e12;
+
+/// Least weight of an unknown in the damping over the largest.
+const FLOOR: f64 = 1e-10;
+
+/// Longest step of a parameter, over its declared value or the present one.
+const LONGEST: f64 = 2.0;
+
+/// Information along a direction over the largest, scaled, below which there is none.
+const NONE: f64 = 1e-12;
+
+/// Share of the cost that rounding of a long record moves.
+const ROUNDING: f64 = 1e-12;
+
+/// The linearised problem at some values, by simulation.
+struct At {
+    iterate: Iterate,
+    lin: Linearised,
+    information: DMatrix<f64>,
+    gradient: DVector<f64>,
+    cost: f64,
+}
+
+impl Solver<'_> {
+    /// Whether the states have no noise, so that a simulation is the trajectory.
+    pub(super) fn is_free(&self) -> bool {
+        self.problem.plant.description.noises.is_empty() && self.noise.loose.is_empty()
+    }
+
+    /// From some values, until no step gains.
+    pub(super) fn damped(&self, values: &[f64]) -> Result<Solution, PlantError> {
+        let mut dynamics = self.dynamics();
+        let mut at = self.simulated(&mut dynamics, values)?;
+        let mut damping = FIRST;
+        for index in 0..MAX_STEPS {
+            let promised = 0.5 * solved(&at.information, &at.gradient).dot(&at.gradient);
+            let enough = if index < PATIENCE { CONVERGED } else { ENOUGH };
+            if promised < enough.max(ROUNDING * at.cost) {
+                return Ok(self.found(at));
+            }
+            let weights = weights(&at.information);
+            let next = loop {
+                if damping > MOST {
+                    break None;
+                }
+                let mut damped = at.information.clone();
+                for (i, weight) in weights.iter().enumerate() {
+                    damped[(i, i)] += damping * weight;
+                }
+                let step = Cholesky::new(damped).map(|cholesky| cholesky.solve(&at.gradient));
+                let moved = step.and_then(|step| {
+                    let values = self.moved(&at.iterate.values, &step);
+                    self.simulated(&mut dynamics, &values).ok()
+                });
+                if let Some(moved) = moved.filter(|moved| moved.cost < at.cost) {
+                    damping *= LESS;
+                    break Some(moved);
+                }
+                damping *= MORE;
+            };
+            match next {
+                Some(next) => at = next,
+                None if promised < STALLED => return Ok(self.found(at)),
+                None => return Err(no_fit("no step lowers the residuals")),
+            }
+        }
+        Err(no_fit("the steps do not end"))
+    }
+
+    /// Values after a step, no parameter by more than [`LONGEST`].
+    fn moved(&self, values: &[f64], step: &DVector<f64>) -> Vec<f64> {
+        let description = &self.problem.plant.description;
+        let first = description.states.len();
+        let mut share: f64 = 1.0;
+        for (index, own) in description.parameters.iter().enumerate() {
+            let (Some(value), Some(change)) = (values.get(first + index), step.get(first + index))
+            else {
+                break;
+            };
+            let size = own.value.abs().max((own.value + value).abs());
+            if size > 0.0 && change.abs() > LONGEST * size {
+                share = share.min(LONGEST * size / change.abs());
+            }
+        }
+        let pairs = values.iter().zip(step.iter());
+        pairs
+            .map(|(value, change)| value + share * change)
+            .collect()
+    }
+
+    fn simulated(&self, dynamics: &mut Dynamics<'_>, values: &[f64]) -> Result<At, PlantError> {
+        let course = self.course(values);
+        let points = dynamics.simulate(&course, &self.problem.initial(values));
+        if let Some(place) = points.iter().position(|value| !value.is_finite()) {
+            let row = place / self.problem.plant.description.states.len().max(1);
+            return Err(PlantError::NotFinite { row });
+        }
+        let lin = dynamics.linearise(&course, &points)?;
+        let reduced = reduce(&lin.pass(&self.noise, &self.lines))?;
+        let count = values.len();
+        let mut information = reduced.gram.view((1, 1), (count, count)).into_owned();
+        let mut gradient = DVector::from_fn(count, |i, _| -reduced.gram[(0, i + 1)]);
+        let mut cost = reduced.gram[(0, 0)];
+        for (i, (sigma, value)) in self.sigmas.iter().zip(values).enumerate() {
+            let weight = sigma.powi(-2);
+            information[(i, i)] += weight;
+            gradient[i] -= weight * value;
+            cost += weight * value * value;
+        }
+        Ok(At {
+            iterate: Iterate {
+                points,
+                values: values.to_vec(),
+            },
+            lin,
+            information,
+            gradient,
+            cost,
+        })
+    }
+
+    fn found(&self, at: At) -> Solution {
+        let change = solved(&at.information, &at.gradient);
+        Solution {
+            covariance: inverse(&at.information),
+            cost: at.cost - change.dot(&at.gradient),
+            lin: at.lin,
+            whole: OnceLock::new(),
+            is_damped: true,
+            at: at.iterate,
+        }
+    }
+}
+
+/// Weights of the unknowns in the damping: their information.
+fn weights(information: &DMatrix<f64>) -> DVector<f64> {
+    let diagonal = information.diagonal();
+    let floor = FLOOR * diagonal.max();
+    diagonal.map(|own| own.max(floor))
+}
+
+/// The step without damping.
+fn solved(information: &DMatrix<f64>, gradient: &DVector<f64>) -> DVector<f64> {
+    match Cholesky::new(information.clone()) {
+        Some(cholesky) => cholesky.solve(gradient),
+        None => inverse(information) * gradient,
+    }
+}
+
+/// The inverse, in which directions without information stay where they are.
+pub(super) fn inverse(information: &DMatrix<f64>) -> DMatrix<f64> {
+    let scales = information
+        .diagonal()
+        .map(|own| if own > 0.0 { own.sqrt().recip() } else { 0.0 });
+    let scaled = DMatrix::from_fn(information.nrows(), information.ncols(), |i, j| {
+        scales[i] * information[(i, j)] * scales[j]
+    });
+    let eigen = SymmetricEigen::new(scaled);
+    let most = eigen.eigenvalues.max();
+    let mut inverse = DMatrix::zeros(information.nrows(), information.ncols());
+    for (value, vector) in eigen
+        .eigenvalues
+        .iter()
+        .zip(eigen.eigenvectors.column_iter())
+    {
+        if *value > NONE * most {
+            let own = vector.component_mul(&scales);
+            inverse.ger(value.recip(), &own, &own, 1.0);
+        }
+    }
+    inverse
+}
