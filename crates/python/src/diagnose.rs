@@ -7,6 +7,7 @@ use gyrocal_cli::NotDiagnosed;
 use gyrocal_diagnosis::{
     DiagnoseOptions, Diagnosis, DiagnosisError, FILTER_EFFECT, Gate, TestedFilter, diagnose_gated,
 };
+use gyrocal_pages::{of_result, read};
 use gyrocal_record::InputRole;
 use gyrocal_setup::PlatformKind;
 use pyo3::prelude::*;
@@ -152,7 +153,7 @@ fn answer(
         }
     }
     result.manifest = manifest(MODEL_HASH, options.seed, inputs, command);
-    let blocks = json(&gyrocal_words::diagnosis(&result))?;
+    let blocks = json(&read(&of_result(&result)))?;
     Ok((answer_text(&result)?, blocks, scores))
 }
 
