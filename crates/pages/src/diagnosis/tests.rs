@@ -40,7 +40,7 @@ fn ljung_box(statistic: f64, degrees_of_freedom: usize) -> String {
 fn line_of(period_h: f64, amplitude: f64, duration_h: f64) -> String {
     let period = match period_h > duration_h {
         true => "period longer than the record".to_owned(),
-        false => format!("period {} h", short(period_h, 3)),
+        false => format!("period {} h", short(period_h, 4)),
     };
     format!("{period}, amplitude {} σ", short(amplitude, 2))
 }
