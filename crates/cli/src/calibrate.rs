@@ -219,7 +219,10 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Reply, Failure> {
     };
     let report = calibrate_and_diagnose(request, |step| match step {
         CalibrationStep::Row(row) => progress.reach(row),
-        CalibrationStep::Fitted => progress.stage("diagnosis", FITTED),
+        CalibrationStep::Fitted(fitted) => {
+            tracing::info!(fit = ?fitted.fit, iterations = fitted.iterations, "calibrated");
+            progress.stage("diagnosis", FITTED);
+        }
         CalibrationStep::NotDiagnosed(path, error) => {
             tracing::warn!(%error, %path, "not diagnosed");
         }

@@ -2,9 +2,9 @@
 
 use gyrocal::trajectory::angles_rad;
 use gyrocal_calibration::{
-    AzimuthSearch, CalibrationError, CoefficientEstimate, ConsiderSensitivity, GyroAxes, Options,
-    Run, RunResult, SiteQuantity, UnobservableCombination, calibrate_runs, calibrate_strapdown,
-    first_run_sigmas, times_overlap,
+    AzimuthSearch, Calibration, CalibrationError, CoefficientEstimate, ConsiderSensitivity,
+    GyroAxes, Options, Run, RunResult, SiteQuantity, UnobservableCombination, calibrate_runs,
+    calibrate_strapdown, first_run_sigmas, times_overlap,
 };
 use gyrocal_record::{
     AveragedReport, AzimuthReport, CALIBRATION_SCHEMA_VERSION, CalibrationMethod,
@@ -56,7 +56,7 @@ pub enum CalibrationStep<'a> {
     /// So many rows were read, of one filter pass.
     Row(usize),
     /// The coefficients are estimated; the diagnoses of the records follow.
-    Fitted,
+    Fitted(&'a Calibration),
     /// A record that could not be diagnosed.
     NotDiagnosed(&'a str, &'a DiagnosisError),
     /// The first of several records cannot be calibrated alone, which is no failure of all together.
@@ -78,7 +78,7 @@ pub fn calibrate_and_diagnose(
         [] => calibrate_runs(&runs, options, |row| told(CalibrationStep::Row(row))),
         axes => calibrate_strapdown(&runs, axes, options, |_| ()),
     }?;
-    told(CalibrationStep::Fitted);
+    told(CalibrationStep::Fitted(&calibration));
     let tests = given.iter().enumerate().filter_map(|(index, one)| {
         let options = DiagnoseOptions::default();
         diagnose_calibrated(&one.name, &one.run, axes.get(index), &options)

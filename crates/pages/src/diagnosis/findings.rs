@@ -1,7 +1,8 @@
 //! What the record shows: effects with their sizes, each record alone, errors of the set-up.
 
-use gyrocal_answer::Answer;
+use gyrocal_answer::{AlternativeKind, Answer};
 use gyrocal_document::{Column, Item, List, Section, Table};
+use gyrocal_statistics::format::percent;
 
 use super::section;
 
@@ -11,7 +12,15 @@ pub(super) fn findings(result: &Answer) -> Option<Section> {
     let names = result.findings.iter().map(|finding| {
         let sizes = gyrocal_words::sizes(finding);
         let sizes = sizes.map_or_else(String::new, |sizes| format!("; {sizes}"));
-        format!("{}: {}{sizes}", finding.effect, finding.name)
+        let has_rivals = finding
+            .of_kind(AlternativeKind::NotExcluded)
+            .next()
+            .is_some();
+        let coverage = finding.coverage.filter(|_| has_rivals);
+        let coverage =
+            coverage.map(|share| format!("; the {} confidence set has others", percent(share)));
+        let coverage = coverage.unwrap_or_default();
+        format!("{}: {}{sizes}{coverage}", finding.effect, finding.name)
     });
     let names = List::of("What they are", names).map(Item::from);
     Some(section(
