@@ -135,7 +135,7 @@ fn what_a_record_is_too_short_to_be_tested_for_is_named() {
         assert!(told.join(" ").contains(words), "{words}\n{said}");
     }
     assert!(
-        !said.contains("are white") && !said.contains("innovations white"),
+        !said.contains("  white ") && !said.contains("innovations white"),
         "{said}"
     );
     let why = |effect: &str| {
