@@ -8,7 +8,7 @@ mod limits;
 pub(crate) mod open_loop;
 pub(crate) mod ranking;
 mod residuals;
-mod tests;
+mod test_table;
 
 use gyrocal_answer::{Answer, Verdict};
 use gyrocal_diagnosis::Diagnosis;

@@ -6,7 +6,7 @@ use gyrocal_document::{Chart, Item, Level, Mark, Panel, Section, Tint};
 use gyrocal_record::AXES;
 use gyrocal_statistics::format;
 
-use super::{section as titled, tests};
+use super::{section as titled, test_table};
 use crate::panels::{self, line};
 
 /// Lags of the autocorrelation.
@@ -16,7 +16,7 @@ const SIDEREAL_PER_DAY: f64 = 1.002_737_9;
 const SECONDS_PER_DAY: f64 = 86_400.0;
 
 pub(super) fn section(result: &Answer, charts: Vec<Chart>) -> Section {
-    let mut items = vec![Item::from(tests::table(result))];
+    let mut items = vec![Item::from(test_table::table(result))];
     items.extend(charts.into_iter().map(Item::Chart));
     items.extend(gyrocal_words::residuals(result).map(Item::from));
     titled(
