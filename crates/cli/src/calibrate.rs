@@ -2,28 +2,25 @@
 
 mod failed;
 mod inputs;
-mod json;
 mod over_time;
 
 use std::path::{Path, PathBuf};
 
 use clap::{ArgAction, Args};
-use gyrocal::Platform;
-use gyrocal_calibration::{
-    Calibration, CalibrationError, GyroAxes, Options, Run, calibrate_runs, calibrate_strapdown,
-};
+use gyrocal::generated::MODEL_HASH;
+use gyrocal_calibration::{GyroAxes, Options, Run};
 use gyrocal_diagnosis::{
-    CalibrationVerdict, DiagnoseOptions, calibration_verdict, diagnose_calibrated, fit_effects,
+    CalibrationRequest, CalibrationStep, DiagnoseOptions, calibrate_and_diagnose, fit_effects,
 };
 use gyrocal_pages::of_calibration;
 use gyrocal_record::{
-    CalibrationMethod, EffectTest, FittedEffects, InputRole, Outputs, printable_path,
+    CalibrationMethod, CalibrationReport, FittedEffects, InputRole, Outputs, printable_path,
 };
 use gyrocal_setup::PlatformKind;
 use miette::miette;
 
 use crate::numbers::positive;
-use crate::outputs;
+use crate::outputs::{self, manifest_of};
 use crate::page::{self, Views};
 use crate::progress::Progress;
 use crate::{Failure, Reply, exit, gyro_axes, records};
@@ -205,36 +202,38 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Reply, Failure> {
     let runs: Vec<Run<'_>> = measurements.iter().map(Measurement::run).collect();
     // First, as it refuses effects that cannot be fitted.
     let with_effects = with_effects(arguments, &runs, gyro_axes.first())?;
-    let mut progress = match arguments.method() {
+    let (method, names) = (arguments.method(), arguments.records.iter());
+    let names: Vec<String> = names.map(|path| printable_path(path)).collect();
+    let mut progress = match method {
         // The number of passes is not known beforehand.
         CalibrationMethod::Batch => Progress::waiting("calibrating", rows),
         _ => Progress::new("calibrating", rows),
     };
-    let names = arguments.records.iter().map(|path| printable_path(path));
-    let names: Vec<String> = names.collect();
-    let fitted = calibrated(&runs, &gyro_axes, &options, &mut progress).map_err(|source| {
-        let method = arguments.method();
+    let request = CalibrationRequest {
+        method,
+        options,
+        records: measurements.iter().map(Measurement::calibrated).collect(),
+        axes: &gyro_axes,
+        with_effects,
+        manifest: manifest_of(MODEL_HASH, 0, &inputs)?,
+    };
+    let report = calibrate_and_diagnose(request, |step| match step {
+        CalibrationStep::Row(row) => progress.reach(row),
+        CalibrationStep::Fitted(fitted) => {
+            tracing::info!(fit = ?fitted.fit, iterations = fitted.iterations, "calibrated");
+            progress.stage("diagnosis", FITTED);
+        }
+        CalibrationStep::NotDiagnosed(path, error) => {
+            tracing::warn!(%error, %path, "not diagnosed");
+        }
+        CalibrationStep::FirstNotAlone(error) => {
+            tracing::warn!(%error, "the first record alone could not be calibrated");
+        }
+    });
+    drop(progress);
+    let report = report.map_err(|source| {
         NotCalibrated::new(&names, &runs, method, arguments.factorised, source)
     })?;
-    progress.stage("diagnosis", FITTED);
-    tracing::info!(fit = ?fitted.fit, iterations = fitted.iterations, "calibrated");
-    let effects = effects(&measurements, &gyro_axes);
-    let given = measurements
-        .iter()
-        .map(|one| one.path.to_string_lossy().into_owned());
-    let given: Vec<String> = given.collect();
-    drop(progress);
-    let found = CalibrationRun {
-        method: arguments.method(),
-        first_run_sigmas: first_run_sigmas(&runs, &gyro_axes, &options),
-        verdict: calibration_verdict(&fitted.fit, &given, &effects),
-        effects,
-        with_effects,
-        calibration: fitted,
-        measurements,
-        gyro_axes,
-    };
-    let report = json::report(&found, &inputs)?;
     let mut answer = Reply::of_part(&page::part(
         &arguments.records[0],
         of_calibration(&report, &[]),
@@ -242,7 +241,7 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Reply, Failure> {
     let mut outputs = Outputs::new();
     if arguments.views.are_asked() {
         let (record, views) = (&arguments.records[0], &arguments.views);
-        let part = over_time::part(record, &report, &found, &options)?;
+        let part = over_time::part(record, &report, &measurements, (&gyro_axes, &options))?;
         views.stage(record, part, &mut outputs, &mut answer)?;
     }
     if let Some(path) = &arguments.json {
@@ -279,7 +278,9 @@ fn stopped(
     inputs: &[(InputRole, &Path)],
 ) -> Result<WrongSetup, Failure> {
     let problems = measurements.iter().flat_map(|one| &one.setup);
-    let report = json::of_wrong_setup(arguments.method(), problems.cloned().collect(), inputs)?;
+    let manifest = manifest_of(MODEL_HASH, 0, inputs)?;
+    let problems = problems.cloned().collect();
+    let report = CalibrationReport::of_wrong_setup(manifest, arguments.method(), problems);
     let mut outputs = Outputs::new();
     // Nothing was fitted, which leaves nothing to draw.
     if let Some(path) = arguments.views.report() {
@@ -311,58 +312,6 @@ fn with_effects(
                 "--with {given}: {error}"
             ))
         })
-}
-
-/// What the diagnoses of the records say.
-fn effects(measurements: &[Measurement], gyro_axes: &[GyroAxes]) -> Vec<EffectTest> {
-    let tests = measurements.iter().enumerate().filter_map(|(index, one)| {
-        let (path, axes) = (one.path.to_string_lossy(), gyro_axes.get(index));
-        diagnose_calibrated(&path, &one.run(), axes, &DiagnoseOptions::default())
-            .inspect_err(|error| tracing::warn!(%error, %path, "not diagnosed"))
-            .ok()
-    });
-    tests.collect()
-}
-
-/// Inputs and result of the command.
-struct CalibrationRun {
-    method: CalibrationMethod,
-    measurements: Vec<Measurement>,
-    /// Axes of the gyros in each record, of a strapdown unit.
-    gyro_axes: Vec<GyroAxes>,
-    calibration: Calibration,
-    /// What the diagnoses of the records say.
-    effects: Vec<EffectTest>,
-    /// The coefficients with the effects of `--with`.
-    with_effects: Option<FittedEffects>,
-    verdict: CalibrationVerdict,
-    /// Sigmas of the coefficients from the first record alone, if there are several and it can
-    /// be calibrated alone.
-    first_run_sigmas: Option<[f64; Platform::PARAMETERS]>,
-}
-
-fn calibrated(
-    runs: &[Run<'_>],
-    gyro_axes: &[GyroAxes],
-    options: &Options,
-    progress: &mut Progress,
-) -> Result<Calibration, CalibrationError> {
-    match gyro_axes {
-        [] => calibrate_runs(runs, options, |row| progress.reach(row)),
-        axes => calibrate_strapdown(runs, axes, options, |_| ()),
-    }
-}
-
-/// A first record that cannot be calibrated alone is no failure of all together.
-fn first_run_sigmas(
-    runs: &[Run<'_>],
-    gyro_axes: &[GyroAxes],
-    options: &Options,
-) -> Option<[f64; Platform::PARAMETERS]> {
-    gyrocal_calibration::first_run_sigmas(runs, gyro_axes, options).unwrap_or_else(|error| {
-        tracing::warn!(%error, "the first record alone could not be calibrated");
-        None
-    })
 }
 
 fn sigmas(text: &str) -> Result<f64, String> {

@@ -1,10 +1,9 @@
 //! Layout of an answer for a terminal: lines, lists and tables.
 
 use comfy_table::{Cell, CellAlignment, ContentArrangement, LineStyle, TableStyle};
-use gyrocal_document::{Column, Estimates, Item, Section, Table, Words};
-use gyrocal_statistics::format;
+use gyrocal_document::{Table, Words};
 
-use crate::text::{bullet, indented, paragraph};
+use crate::text::{bullet, paragraph};
 use crate::width;
 
 /// An answer in words, an empty line between any two pieces.
@@ -13,57 +12,9 @@ pub(crate) fn layout(pieces: &[Words]) -> String {
     texts.join("\n")
 }
 
-/// What is read of sections: all but charts and bars, which pages and pictures have.
-pub(crate) fn sections(sections: &[Section]) -> String {
-    let texts = sections.iter().filter_map(|section| {
-        let items = section.items.iter().filter_map(|item| match item {
-            Item::Words(words) => Some(piece(words)),
-            Item::Estimates(estimates) => Some(piece(&Words::Table(side_by_side(estimates)))),
-            _ => None,
-        });
-        let items: Vec<String> = items.collect();
-        let lead = paragraph(&section.lead);
-        (!items.is_empty()).then(|| format!("{}\n\n{lead}\n{}", section.title, items.join("\n")))
-    });
-    texts.collect::<Vec<_>>().join("\n")
-}
-
-fn side_by_side(estimates: &Estimates) -> Table {
-    let models = estimates
-        .models
-        .iter()
-        .map(|(name, _)| Column::numbers(name));
-    let mut columns = vec![Column::words("coefficient")];
-    columns.extend(models.chain([Column::words("unit"), Column::numbers(&estimates.note_head)]));
-    let rows = estimates.rows.iter().map(|row| {
-        let values = row.values.iter().map(|one| match one.value.is_nan() {
-            true => String::new(),
-            false => format::estimate(one.value, one.sigma).join(" ± "),
-        });
-        let mut cells = vec![row.name.clone()];
-        cells.extend(values.chain([row.unit.clone(), row.note.clone()]));
-        cells
-    });
-    let mut table = Table::new(&estimates.title, columns, rows);
-    if estimates.note_head.is_empty() {
-        table.columns.pop();
-    }
-    table
-}
-
 fn piece(piece: &Words) -> String {
     match piece {
         Words::Paragraph(words) => paragraph(words),
-        Words::Entry(entry) => {
-            let body = entry.paragraphs.iter();
-            let body = body.map(|words| indented("   ", words));
-            format!(
-                "{}. {}\n{}",
-                entry.number,
-                entry.title,
-                body.collect::<String>()
-            )
-        }
         Words::List(list) => {
             let entries = list.entries.iter().map(|entry| bullet(entry));
             format!("{}{}", titled(&list.title), entries.collect::<String>())

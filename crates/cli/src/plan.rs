@@ -10,11 +10,10 @@ use std::path::{Path, PathBuf};
 use clap::{ArgAction, Args, ValueEnum};
 use gyrocal::generated::MODEL_HASH;
 use gyrocal_calibration::Run;
-use gyrocal_design::{Aim, PlanOptions, first_screen, plan, prose};
+use gyrocal_design::{Aim, PlanOptions, plan};
 use gyrocal_pages::of_plan;
 use gyrocal_record::{Bench, InputRole, Outputs, RecordFile};
 
-use crate::layout::layout;
 use crate::numbers::{positive, probability};
 use crate::outputs::{self, manifest_of};
 use crate::page::Views;
@@ -165,10 +164,10 @@ pub(crate) fn run(arguments: &PlanArguments) -> Result<Reply, Failure> {
     drop(progress);
     planned.setup.clone_from(&known.setup);
     planned.manifest = manifest_of(MODEL_HASH, options.seed, &read)?;
-    let mut answer = Reply::of(first_screen(&planned), layout(&prose(&planned)));
+    let part = of_plan(&planned);
+    let mut answer = Reply::of_part(&part);
     let mut outputs = Outputs::new();
     if arguments.views.are_asked() {
-        let part = of_plan(&planned);
         arguments
             .views
             .stage(&arguments.records[0], part, &mut outputs, &mut answer)?;

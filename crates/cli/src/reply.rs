@@ -5,6 +5,7 @@ use std::path::Path;
 
 use gyrocal_answer::Answer;
 use gyrocal_document::{Part, Screen};
+use gyrocal_pages::{of_result, read_sections};
 use gyrocal_record::{printable, printable_path};
 
 use crate::{layout, terminal};
@@ -41,15 +42,15 @@ impl Reply {
         }
     }
 
-    /// What a diagnosis of a platform tells.
+    /// What a diagnosis tells.
     pub(crate) fn of_answer(answer: &Answer) -> Self {
-        let text = layout::layout(&gyrocal_words::diagnosis(answer));
-        Self::of(gyrocal_words::first_screen(answer), text)
+        Self::of_part(&of_result(answer))
     }
 
     /// What a page shows: its first screen, and its sections as details.
     pub(crate) fn of_part(part: &Part) -> Self {
-        Self::of(part.first.clone(), layout::sections(&part.sections))
+        let details = layout::layout(&read_sections(&part.sections));
+        Self::of(part.first.clone(), details)
     }
 
     /// Tells of a file that was written.

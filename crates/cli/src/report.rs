@@ -12,7 +12,7 @@ use gyrocal_diagnosis::{
     record_uncertainty,
 };
 use gyrocal_pages::{
-    Part, of_budget, of_calibration, of_diagnosis, of_plan, of_result, of_spread,
+    Part, of_budget, of_calibration, of_diagnosis, of_plan, of_result, of_spread, read_sections,
     uncertainty_screen,
 };
 use gyrocal_record::{
@@ -116,7 +116,10 @@ pub(crate) fn run(arguments: &ReportArguments) -> Result<Reply, Failure> {
         let sections: Vec<_> = sections
             .chain(found.spread.as_ref().map(of_spread))
             .collect();
-        answer = Reply::of(uncertainty_screen(&found), layout::sections(&sections));
+        answer = Reply::of(
+            uncertainty_screen(&found),
+            layout::layout(&read_sections(&sections)),
+        );
         if let Some(path) = json {
             outputs.stage_json(path, &found)?;
             answer.wrote(path, "uncertainty budgets");

@@ -12,11 +12,6 @@ pub(crate) fn paragraph(words: &str) -> String {
     lines("", "", words)
 }
 
-/// The same with an indent in front of each line.
-pub(crate) fn indented(indent: &str, words: &str) -> String {
-    lines(indent, indent, words)
-}
-
 /// An entry of a list.
 pub(crate) fn bullet(words: &str) -> String {
     lines(" - ", "   ", words)
@@ -46,7 +41,7 @@ fn options<'a>(width: usize) -> Options<'a> {
 
 #[cfg(test)]
 mod tests {
-    use super::{LINE, bullet, indented, paragraph};
+    use super::{LINE, bullet, paragraph};
 
     #[test]
     fn lines_are_filled_and_not_overfilled() {
@@ -75,9 +70,5 @@ mod tests {
         assert!(broken[0].starts_with(" - word") && broken[1].starts_with("   word"));
         assert!(broken.iter().all(|line| line.len() <= LINE));
         assert_eq!(text.matches("word").count(), 40);
-        assert_eq!(
-            indented("   ", words.trim_end())[1..],
-            text.replace('-', " ")[1..]
-        );
     }
 }

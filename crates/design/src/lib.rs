@@ -86,7 +86,7 @@ pub use goal::Goal;
 pub use named_cause::{NamedCause, fitted_to_records, noise_of};
 pub use options::PlanOptions;
 pub use plan::plan;
-pub use prose::prose;
+pub use prose::{prose, tables};
 #[cfg(feature = "schema")]
 pub use result::schema;
 pub use result::{

@@ -12,7 +12,7 @@ const DISTINGUISHED: f64 = 0.95;
 /// Probability below which two causes count as not distinguished.
 const NOT_DISTINGUISHED: f64 = 0.5;
 
-/// The whole plan in reading order.
+/// The plan in sentences, in reading order.
 #[must_use]
 pub fn prose(plan: &PlanResult) -> Vec<Words> {
     let mut blocks = vec![
@@ -43,7 +43,6 @@ pub fn prose(plan: &PlanResult) -> Vec<Words> {
             class.join(" and ")
         ))
     }));
-    blocks.extend(tables(plan).into_iter().map(Words::Table));
     blocks
 }
 
@@ -199,7 +198,9 @@ pub(crate) fn goal(plan: &PlanResult) -> Option<String> {
     })
 }
 
-fn tables(plan: &PlanResult) -> Vec<Table> {
+/// Runs, standard deviations, and what is distinguished.
+#[must_use]
+pub fn tables(plan: &PlanResult) -> Vec<Table> {
     let mut tables = vec![runs(plan)];
     let Some(best) = plan.proposals.first() else {
         return tables;

@@ -1,28 +1,30 @@
-//! The result of a calibration as plain data.
+//! A calibration with the diagnoses of its records, and its result as plain data.
 
 use gyrocal::trajectory::angles_rad;
 use gyrocal_calibration::{
-    AzimuthSearch, Calibration, CoefficientEstimate, ConsiderSensitivity, RunResult, SiteQuantity,
-    UnobservableCombination, times_overlap,
+    AzimuthSearch, Calibration, CalibrationError, CoefficientEstimate, ConsiderSensitivity,
+    GyroAxes, Options, Run, RunResult, SiteQuantity, UnobservableCombination, calibrate_runs,
+    calibrate_strapdown, first_run_sigmas, times_overlap,
 };
 use gyrocal_record::{
     AveragedReport, AzimuthReport, CALIBRATION_SCHEMA_VERSION, CalibrationMethod,
-    CalibrationReport, Coefficient, EffectTest, FittedEffects, Manifest, OtherAzimuth, Record,
+    CalibrationReport, Coefficient, EffectTest, FittedEffects, Manifest, OtherAzimuth,
     RecordReport, RunReport, SetupProblem, SiteReport, TurnOn, UndeterminedReport,
 };
 
-use crate::COEFFICIENTS;
-use crate::calibration_verdict::CalibrationVerdict;
+use crate::calibration_verdict::calibration_verdict;
+use crate::diagnose::{DiagnoseOptions, diagnose_calibrated};
+use crate::error::DiagnosisError;
 
-/// A record that was calibrated, for the result.
+/// A record to be calibrated.
 #[derive(Clone, Debug)]
 pub struct CalibratedRecord<'a> {
     /// Its name, as its path was given.
     pub name: String,
     /// The name of its bench description.
     pub bench_name: String,
-    /// The record as it was calibrated.
-    pub record: &'a Record,
+    /// The record as it is calibrated.
+    pub run: Run<'a>,
     /// Rows before averaging.
     pub rows: usize,
     /// Averaging of its rows.
@@ -31,40 +33,70 @@ pub struct CalibratedRecord<'a> {
     pub setup: &'a [SetupProblem],
 }
 
-/// All that the result of a calibration is made of.
+/// What is calibrated, and how.
 #[derive(Clone, Debug)]
-pub struct CalibrationEvidence<'a> {
-    /// Method of estimation.
+pub struct CalibrationRequest<'a> {
+    /// Method of estimation, which `options` are of.
     pub method: CalibrationMethod,
-    /// The records, in the order of the runs of `calibration`.
+    /// Settings of the estimation.
+    pub options: Options,
+    /// The records.
     pub records: Vec<CalibratedRecord<'a>>,
-    /// The estimates.
-    pub calibration: &'a Calibration,
-    /// What the diagnoses of the records say.
-    pub effects: &'a [EffectTest],
+    /// Axes of the instruments in each record, of a strapdown unit; else empty.
+    pub axes: &'a [GyroAxes],
     /// The coefficients with given effects in the model.
-    pub with_effects: Option<&'a FittedEffects>,
-    /// Verdict on set-up, effects and innovations.
-    pub verdict: &'a CalibrationVerdict,
-    /// Sigmas of the coefficients from the first record alone, if there are several.
-    pub first_record_sigmas: Option<[f64; COEFFICIENTS]>,
+    pub with_effects: Option<FittedEffects>,
+    /// Origin of the result.
+    pub manifest: Manifest,
 }
 
-/// The result of a calibration; its JSON is what `gyrocal calibrate --json` writes.
-#[must_use]
-pub fn calibration_report(
-    evidence: CalibrationEvidence<'_>,
-    manifest: Manifest,
-) -> CalibrationReport {
-    let calibration = evidence.calibration;
+/// How far a calibration is.
+#[derive(Debug)]
+pub enum CalibrationStep<'a> {
+    /// So many rows were read, of one filter pass.
+    Row(usize),
+    /// The coefficients are estimated; the diagnoses of the records follow.
+    Fitted(&'a Calibration),
+    /// A record that could not be diagnosed.
+    NotDiagnosed(&'a str, &'a DiagnosisError),
+    /// The first of several records cannot be calibrated alone, which is no failure of all together.
+    FirstNotAlone(&'a CalibrationError),
+}
+
+/// Calibrates records and diagnoses each: the result whose JSON is what `gyrocal calibrate --json` writes. `told` hears
+/// how far it is.
+///
+/// # Errors
+/// [`CalibrationError`] if the coefficients cannot be estimated.
+pub fn calibrate_and_diagnose(
+    request: CalibrationRequest<'_>,
+    mut told: impl FnMut(CalibrationStep<'_>),
+) -> Result<CalibrationReport, CalibrationError> {
+    let (given, axes, options) = (&request.records, request.axes, &request.options);
+    let runs: Vec<Run<'_>> = given.iter().map(|one| one.run).collect();
+    let calibration = match axes {
+        [] => calibrate_runs(&runs, options, |row| told(CalibrationStep::Row(row))),
+        axes => calibrate_strapdown(&runs, axes, options, |_| ()),
+    }?;
+    told(CalibrationStep::Fitted(&calibration));
+    let tests = given.iter().enumerate().filter_map(|(index, one)| {
+        let options = DiagnoseOptions::default();
+        diagnose_calibrated(&one.name, &one.run, axes.get(index), &options)
+            .inspect_err(|error| told(CalibrationStep::NotDiagnosed(&one.name, error)))
+            .ok()
+    });
+    let effects: Vec<EffectTest> = tests.collect();
+    let first = first_run_sigmas(&runs, axes, options);
+    let first = first.inspect_err(|error| told(CalibrationStep::FirstNotAlone(error)));
     let fit = &calibration.fit;
-    let setup = evidence.records.iter().flat_map(|record| record.setup);
-    let runs = evidence.records.iter().zip(&calibration.runs);
-    CalibrationReport {
+    let names: Vec<String> = given.iter().map(|one| one.name.clone()).collect();
+    let verdict = calibration_verdict(fit, &names, &effects);
+    let setup = given.iter().flat_map(|record| record.setup);
+    let runs = given.iter().zip(&calibration.runs);
+    Ok(CalibrationReport {
         schema_version: CALIBRATION_SCHEMA_VERSION,
-        manifest,
         setup: setup.cloned().collect(),
-        effects: evidence.effects.to_vec(),
+        effects,
         coefficients: calibration
             .coefficients()
             .into_iter()
@@ -73,20 +105,21 @@ pub fn calibration_report(
         covariance: calibration.covariance.map(Vec::from).to_vec(),
         nis_mean: Some(fit.nis_mean()),
         nis_band: Some(fit.nis_band()),
-        verdict: evidence.verdict.verdict,
-        verdict_text: evidence.verdict.text.clone(),
+        verdict: verdict.verdict,
+        verdict_text: verdict.text,
         iterations: calibration.iterations,
         usable: !fit.is_gross(),
-        records: records(&evidence.records),
+        records: records(given),
         rows: fit.rows(),
         final_angles_deg: Some(calibration.final_angles_rad.map(f64::to_degrees)),
-        method: evidence.method,
+        method: request.method,
         undetermined: calibration.unobservable.iter().map(undetermined).collect(),
         runs: runs.map(|(record, run)| run_report(record, run)).collect(),
         site: calibration.site_sensitivities.iter().map(site).collect(),
-        first_record_sigmas: evidence.first_record_sigmas.map(Vec::from),
-        with_effects: evidence.with_effects.cloned(),
-    }
+        first_record_sigmas: first.unwrap_or(None).map(Vec::from),
+        with_effects: request.with_effects,
+        manifest: request.manifest,
+    })
 }
 
 fn coefficient(found: CoefficientEstimate) -> Coefficient {
@@ -110,12 +143,12 @@ fn undetermined(combination: &UnobservableCombination) -> UndeterminedReport {
 fn records(all: &[CalibratedRecord<'_>]) -> Vec<RecordReport> {
     let told = all.iter().enumerate().map(|(place, one)| {
         let earlier = all[..place].iter();
-        let overlaps = earlier.filter(|other| times_overlap(other.record, one.record));
+        let overlaps = earlier.filter(|other| times_overlap(other.run.record, one.run.record));
         RecordReport {
             record: one.name.clone(),
             bench: one.bench_name.clone(),
             rows: one.rows,
-            duration_s: one.record.duration_s(),
+            duration_s: one.run.record.duration_s(),
             averaged: one.averaged,
             overlaps: overlaps.map(|other| other.name.clone()).collect(),
         }

@@ -6,18 +6,17 @@ use gyrocal_statistics::format::p_value;
 
 /// A verdict with its sentences.
 #[derive(Clone, Debug, PartialEq)]
-pub struct CalibrationVerdict {
+pub(crate) struct CalibrationVerdict {
     /// The verdict in one word.
-    pub verdict: FitVerdict,
+    pub(crate) verdict: FitVerdict,
     /// The same in a few sentences.
-    pub text: String,
+    pub(crate) text: String,
 }
 
 /// The verdict on a fit: what the diagnosis of a record names comes before the size of the innovations, since
 /// a test of all innovations together does not see a fault of ten sigmas of its own size. `records` are the
 /// names of all records, `effects` what the diagnoses of those say that could be diagnosed.
-#[must_use]
-pub fn calibration_verdict(
+pub(crate) fn calibration_verdict(
     fit: &FitStatistics,
     records: &[String],
     effects: &[EffectTest],

@@ -42,7 +42,7 @@ use gyro_noise::{gyro_noise_findings, over_declared};
 use gyrocal_answer::{Answer, FalseAlarmShares, Gain};
 pub use later::predict_later;
 use noise_audited_fit::{AuditedFit, noise_audited_fit};
-pub use of_calibration::diagnose_calibrated;
+pub(crate) use of_calibration::diagnose_calibrated;
 pub use options::DiagnoseOptions;
 pub use records::{
     RecordToDiagnose, RecordsDiagnosis, diagnose_records, diagnose_together, problems_of,

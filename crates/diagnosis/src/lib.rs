@@ -94,12 +94,13 @@ mod untested;
 mod validation;
 mod watch;
 
-pub use calibration_report::{CalibratedRecord, CalibrationEvidence, calibration_report};
-pub use calibration_verdict::{CalibrationVerdict, calibration_verdict};
+pub use calibration_report::{
+    CalibratedRecord, CalibrationRequest, CalibrationStep, calibrate_and_diagnose,
+};
 pub use diagnose::{
-    DiagnoseOptions, Diagnosis, RecordToDiagnose, RecordsDiagnosis, diagnose, diagnose_calibrated,
-    diagnose_gated, diagnose_records, diagnose_together, diagnose_watched, fit_effects, manifest,
-    predict_later, problems_of, record_summary, records_summary,
+    DiagnoseOptions, Diagnosis, RecordToDiagnose, RecordsDiagnosis, diagnose, diagnose_gated,
+    diagnose_records, diagnose_together, diagnose_watched, fit_effects, manifest, predict_later,
+    problems_of, record_summary, records_summary,
 };
 pub use error::DiagnosisError;
 pub use filter_test::{FILTER_EFFECT, TestedFilter};

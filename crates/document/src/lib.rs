@@ -21,4 +21,4 @@ pub use estimates::{EstimateRow, Estimates, ValueWithSigma};
 pub use page::{Item, Origin, OriginFile, Page, Part, Section};
 pub use screen::{Fact, NextStep, Screen, Standing};
 pub use time::TimeAxis;
-pub use words::{Cell, Column, Entry, List, Table, Words};
+pub use words::{Cell, Column, List, Table, Words};

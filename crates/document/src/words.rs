@@ -8,25 +8,12 @@ use serde::{Deserialize, Serialize};
 pub enum Words {
     /// Sentences.
     Paragraph(String),
-    /// One entry of a numbered list, with paragraphs below its title.
-    Entry(Entry),
     /// A list with a title.
     List(List),
     /// A table with a title.
     Table(Table),
     /// A command to copy.
     Command(String),
-}
-
-/// One entry of a numbered list.
-#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
-pub struct Entry {
-    /// Its number.
-    pub number: usize,
-    /// Its title.
-    pub title: String,
-    /// Its text.
-    pub paragraphs: Vec<String>,
 }
 
 /// A list.

@@ -7,7 +7,6 @@ use gyrocal_pages::of_result;
 use gyrocal_record::SourceText;
 use gyrocal_testkit::contracts::{schema_of, violations};
 use gyrocal_testkit::run;
-use gyrocal_words::diagnosis;
 use serde::{Deserialize, Serialize};
 
 use crate::before::gyrocal;
@@ -108,11 +107,10 @@ fn settled(answer: &Answer) -> Vec<String> {
     if !first.to_lowercase().contains("not settled") {
         places.push(format!("first screen: {first}"));
     }
-    let said = match answer.subject {
-        Subject::Plant(_) => gyrocal_words::plant::all(answer).join(" "),
-        _ => format!("{:?}", diagnosis(answer)),
-    };
-    let said = format!("{said} {page:?}");
+    let mut said = format!("{page:?}");
+    if matches!(answer.subject, Subject::Plant(_)) {
+        said += &gyrocal_words::plant::all(answer).join(" ");
+    }
     let claims = CLAIMS.iter().filter(|claim| said.contains(**claim));
     places.extend(claims.map(|claim| format!("\"{claim}\"")));
     places

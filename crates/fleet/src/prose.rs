@@ -11,7 +11,7 @@ use crate::answer::{
 /// Units that are named in a sentence.
 const NAMED: usize = 5;
 
-/// The whole answer in reading order.
+/// The answer in sentences, in reading order.
 #[must_use]
 pub fn all(fleet: &FleetResult) -> Vec<Words> {
     let mut blocks = vec![
@@ -35,7 +35,6 @@ pub fn all(fleet: &FleetResult) -> Vec<Words> {
         "Causes that units show by themselves",
         found.collect(),
     ));
-    blocks.push(Words::Table(coefficients(fleet)));
     let problems = fleet.problems.iter();
     let problems = problems.map(|one| format!("{}/{}: {}", one.unit, one.record, one.problem));
     blocks.extend(list("Records that are left out", problems.collect()));
@@ -235,7 +234,8 @@ fn interval(found: &WithInterval) -> String {
 }
 
 /// Mean, spread and ageing of each coefficient.
-fn coefficients(fleet: &FleetResult) -> Table {
+#[must_use]
+pub fn coefficients(fleet: &FleetResult) -> Table {
     let cell = |found: &Option<WithInterval>| found.as_ref().map_or_else(String::new, interval);
     let rows = fleet.coefficients.iter().map(|one| {
         vec![

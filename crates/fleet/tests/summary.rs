@@ -111,7 +111,7 @@ fn the_order_of_records_changes_nothing() {
     records.reverse();
     assert_eq!(summarise(&records, &options).unwrap(), first);
     assert_eq!(first.found_in_units[0].units, ["a", "b", "c"]);
-    let words = format!("{:?}", prose::all(&first));
+    let words = format!("{:?} {:?}", prose::all(&first), prose::coefficients(&first));
     // What is not settled or left out makes the first screen less sure.
     let screen = prose::first_screen(&first);
     assert_eq!(screen.standing, Standing::Good, "{screen:?}");

@@ -7,7 +7,6 @@ use gyrocal_words::counted;
 
 use crate::diagnosis::section;
 use crate::origin::origin;
-use crate::words::by_kind;
 
 /// Units of a coefficient that are shown as bars.
 const SHOWN: usize = 40;
@@ -15,12 +14,11 @@ const SHOWN: usize = 40;
 /// The page of what a fleet shows.
 #[must_use]
 pub fn of_fleet(fleet: &FleetResult) -> Part {
-    let (tables, words) = by_kind(prose::all(fleet));
     let mut sections = vec![section(
         "coefficients",
         "Coefficients over the units",
         "Mean and spread of the units, with 95 % intervals. The spread is without the errors of the estimates.",
-        tables,
+        vec![Item::from(prose::coefficients(fleet))],
     )];
     if !fleet.recurring.is_empty() {
         sections.push(section(
@@ -75,7 +73,7 @@ pub fn of_fleet(fleet: &FleetResult) -> Part {
         "words",
         "In words",
         "All that the fleet shows.",
-        words,
+        prose::all(fleet).into_iter().map(Item::Words).collect(),
     ));
     Part {
         name: "fleet".to_owned(),

@@ -20,7 +20,7 @@
 //! | [`of_characterise`] | operating characteristics |
 //! | [`of_allan`] | Allan deviations of a log |
 //!
-//! [`pictures`] are the charts of a part, for files of their own.
+//! [`pictures`] are the charts of a part, for files of their own; [`read`] gives the rest of it, for a terminal.
 //!
 //! # What it does not do
 //!
@@ -40,6 +40,7 @@ mod plan;
 mod plant;
 mod ranked;
 mod rates;
+mod read;
 mod tumble;
 mod uncertainty;
 mod unlisted;
@@ -59,6 +60,7 @@ pub use pictures::pictures;
 pub use plan::of_plan;
 pub use plant::of_plant;
 pub use rates::of_rates;
+pub use read::{read, read_sections};
 pub use tumble::{TumbleAnswer, of_tumble};
 pub use uncertainty::{of_budget, of_spread, uncertainty_screen};
 

@@ -1,23 +1,21 @@
 //! The page of a planned next run.
 
-use gyrocal_design::{AttitudeOf, PlanResult, Proposal, prose};
+use gyrocal_design::{AttitudeOf, PlanResult, Proposal, prose, tables};
 use gyrocal_document::{Bar, BarGroup, Bars, Item, Part, Tint};
 use gyrocal_statistics::format;
 use gyrocal_words::counted;
 
 use crate::diagnosis::section;
 use crate::origin::{file_name, origin};
-use crate::words::by_kind;
 
 /// The page of a plan.
 #[must_use]
 pub fn of_plan(plan: &PlanResult) -> Part {
-    let (tables, words) = by_kind(prose(plan));
     let mut sections = vec![section(
         "sigmas",
         "What the run gives",
         "Runs, standard deviations and what is told apart: of the record so far, and of record and next run together.",
-        tables,
+        tables(plan).into_iter().map(Item::from).collect(),
     )];
     if !plan.proposals.is_empty() {
         sections.push(section(
@@ -30,8 +28,8 @@ pub fn of_plan(plan: &PlanResult) -> Part {
     sections.push(section(
         "words",
         "In words",
-        "The answer as the command prints it.",
-        words,
+        "What is known, the recommended run, and what it is expected to tell.",
+        prose(plan).into_iter().map(Item::Words).collect(),
     ));
     Part {
         name: match plan.records.len() {

@@ -11,7 +11,15 @@ pub(crate) fn unlisted(answer: &Answer) -> Option<Item> {
             Some(none) => format!("{} %", format::short(100.0 * none, 2)),
             None => "not estimated".to_owned(),
         };
-        format!("{}: probability {probability}", finding.effect)
+        let ratio = finding.none_of_these_log_likelihood_ratio.map(|nats| {
+            let ratio = match nats.exp() {
+                ratio if ratio.is_finite() => format::short(ratio, 2),
+                _ => format!("exp({nats:.0})"),
+            };
+            format!(", {ratio} times the likelihood of these")
+        });
+        let ratio = ratio.unwrap_or_default();
+        format!("{}: probability {probability}{ratio}", finding.effect)
     });
     let title = "The cause is outside of the catalogue, in the place of";
     List::of(title, causes).map(Item::from)

@@ -1,13 +1,6 @@
-//! Words of answers, and numbers in them.
+//! Words and numbers in sentences.
 
-use gyrocal_document::{Item, Words};
 use gyrocal_statistics::format;
-
-/// The tables of an answer, and its other words.
-pub(crate) fn by_kind(words: Vec<Words>) -> (Vec<Item>, Vec<Item>) {
-    let all = words.into_iter().map(Item::Words);
-    all.partition(|item| matches!(item, Item::Words(Words::Table(_))))
-}
 
 /// A specific force in µg.
 pub(crate) fn micro_g(force_g: f64) -> String {

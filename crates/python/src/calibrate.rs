@@ -3,17 +3,15 @@
 use std::borrow::Cow;
 
 use gyrocal::generated::MODEL_HASH;
-use gyrocal_calibration::{
-    GyroAxes, Options, Run, average_record, calibrate_runs, calibrate_strapdown, shared_rows,
-};
+use gyrocal_calibration::{GyroAxes, Options, Run, average_record, shared_rows};
 use gyrocal_cli::NotCalibrated;
 use gyrocal_diagnosis::{
-    CalibratedRecord, CalibrationEvidence, DiagnoseOptions, Gate, calibration_report,
-    calibration_verdict, diagnose_calibrated, fit_effects,
+    CalibratedRecord, CalibrationRequest, DiagnoseOptions, Gate, calibrate_and_diagnose,
+    fit_effects,
 };
 use gyrocal_record::{
-    AveragedReport, Bench, CalibrationMethod, CalibrationReport, EffectTest, FittedEffects,
-    InputRole, Manifest, Record, SetupProblem,
+    AveragedReport, Bench, CalibrationMethod, CalibrationReport, FittedEffects, InputRole,
+    Manifest, Record, SetupProblem,
 };
 use pyo3::prelude::*;
 
@@ -124,36 +122,26 @@ fn report(given: &[Given<'_>], request: &Request, command: &str) -> Outcome<Cali
     let manifest = origin(given, command)?;
     let sound = sound(given, request, &manifest)?;
     let runs: Vec<Run<'_>> = sound.iter().map(Sound::run).collect();
-    let options = request.options();
     let axes = gyro_axes(&sound)?;
     let with_effects = with_effects(request, &runs, axes.first())?;
     let names: Vec<String> = given
         .iter()
         .map(|one| one.record.input.path.clone())
         .collect();
-    let (method, factorised) = (request.method, request.factorised);
-    let calibration = match &axes[..] {
-        [] => calibrate_runs(&runs, &options, |_| ()),
-        axes => calibrate_strapdown(&runs, axes, &options, |_| ()),
+    let asked = CalibrationRequest {
+        method: request.method,
+        options: request.options(),
+        records: sound.iter().map(Sound::calibrated).collect(),
+        axes: &axes,
+        with_effects,
+        manifest,
     };
-    let calibration = calibration.map_err(|source| {
+    calibrate_and_diagnose(asked, |_| ()).map_err(|source| {
+        let (method, factorised) = (request.method, request.factorised);
         Failure::of_work(&NotCalibrated::new(
             &names, &runs, method, factorised, source,
         ))
-    })?;
-    let effects = effects(&names, &runs, &axes);
-    let first = gyrocal_calibration::first_run_sigmas(&runs, &axes, &options);
-    let evidence = CalibrationEvidence {
-        method,
-        records: sound.iter().map(Sound::calibrated).collect(),
-        calibration: &calibration,
-        effects: &effects,
-        with_effects: with_effects.as_ref(),
-        verdict: &calibration_verdict(&calibration.fit, &names, &effects),
-        // A first record that cannot be calibrated alone is no failure of all together.
-        first_record_sigmas: first.unwrap_or(None),
-    };
-    Ok(calibration_report(evidence, manifest))
+    })
 }
 
 /// Inputs in the order of the command: all records, then each bench description once, then the axes.
@@ -192,7 +180,7 @@ impl<'a> Sound<'a> {
         CalibratedRecord {
             name: self.given.record.input.path.clone(),
             bench_name: self.given.bench.input.path.clone(),
-            record: &self.record,
+            run: self.run(),
             rows: self.rows,
             averaged: self.averaged,
             setup: &self.setup,
@@ -336,13 +324,4 @@ fn with_effects(
         advice: Some("`diagnose` finds which effects the record shows".to_owned()),
         ..Failure::default()
     })
-}
-
-/// What the diagnoses of the records say.
-fn effects(names: &[String], runs: &[Run<'_>], axes: &[GyroAxes]) -> Vec<EffectTest> {
-    let pairs = names.iter().zip(runs).enumerate();
-    let tests = pairs.filter_map(|(index, (name, run))| {
-        diagnose_calibrated(name, run, axes.get(index), &DiagnoseOptions::default()).ok()
-    });
-    tests.collect()
 }

@@ -14,7 +14,7 @@ use pyo3::prelude::*;
 use crate::axes::{Axes, GivenAxes};
 use crate::bench::HeldBench;
 use crate::error::{Failure, Outcome};
-use crate::origin::{answer_text, json, manifest};
+use crate::origin::{answer_text, manifest};
 use crate::record::HeldRecord;
 
 /// A record with its bench description.
@@ -61,11 +61,8 @@ impl<'a> Given<'a> {
     }
 }
 
-/// The result (JSON), and its sentences and tables (JSON).
-pub(crate) type Texts = (String, String);
-
-/// The same with the scores of the record as bytes, of a record that was searched.
-pub(crate) type Scored = (String, String, Option<Vec<u8>>);
+/// The result (JSON) and the scores of the record as bytes, of a record that was searched.
+pub(crate) type Scored = (String, Option<Vec<u8>>);
 
 /// Diagnoses a record.
 #[pyfunction]
@@ -152,8 +149,7 @@ fn answer(
         }
     }
     result.manifest = manifest(MODEL_HASH, options.seed, inputs, command);
-    let blocks = json(&gyrocal_words::diagnosis(&result))?;
-    Ok((answer_text(&result)?, blocks, scores))
+    Ok((answer_text(&result)?, scores))
 }
 
 /// The result and the scores. A gross error of the set-up is an answer too.

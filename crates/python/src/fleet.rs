@@ -1,12 +1,9 @@
 //! What the diagnosed records of a fleet show together.
 
 use gyrocal::generated::MODEL_HASH;
-use gyrocal_fleet::{
-    FleetError, FleetOptions, FleetRecord, RecordName, RecordProblem, prose, summarise,
-};
+use gyrocal_fleet::{FleetError, FleetOptions, FleetRecord, RecordName, RecordProblem, summarise};
 use pyo3::prelude::*;
 
-use crate::diagnose::Texts;
 use crate::error::{Failure, Outcome};
 use crate::origin::{json, manifest};
 
@@ -53,7 +50,7 @@ pub(crate) fn summarise_fleet(
     outlier_probability: f64,
     seed: u64,
     command: &str,
-) -> PyResult<Texts> {
+) -> PyResult<String> {
     let options = FleetOptions {
         false_discovery_rate,
         group_probability,
@@ -63,7 +60,7 @@ pub(crate) fn summarise_fleet(
     Ok(py.detach(|| answer(records, &options, command))?)
 }
 
-fn answer(records: Vec<Diagnosed>, options: &FleetOptions, command: &str) -> Outcome<Texts> {
+fn answer(records: Vec<Diagnosed>, options: &FleetOptions, command: &str) -> Outcome<String> {
     let mut read = Vec::with_capacity(records.len());
     let mut problems = Vec::new();
     for one in records {
@@ -94,5 +91,5 @@ fn answer(records: Vec<Diagnosed>, options: &FleetOptions, command: &str) -> Out
     let mut result = summarise(&read, options)?;
     result.problems.extend(problems);
     result.manifest = manifest(MODEL_HASH, options.seed, Vec::new(), command);
-    Ok((json(&result)?, json(&prose::all(&result))?))
+    json(&result)
 }

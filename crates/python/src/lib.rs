@@ -56,7 +56,7 @@ mod _gyrocal {
     #[pymodule_export]
     use crate::record::HeldRecord;
     #[pymodule_export]
-    use crate::report::{html_of, report, text_of};
+    use crate::report::{html_of, report, text_of, words_of};
     #[pymodule_export]
     use crate::simulate::simulate;
 

@@ -6,16 +6,14 @@ use gyrocal::generated::MODEL_HASH;
 use gyrocal_answer::Answer;
 use gyrocal_calibration::{FittedPlatform, Options, Run};
 use gyrocal_cli::NotPlanned;
-use gyrocal_design::{
-    Aim, DesignError, Goal, NamedCause, PlanOptions, noise_of, plan as design, prose,
-};
+use gyrocal_design::{Aim, DesignError, Goal, NamedCause, PlanOptions, noise_of, plan as design};
 use gyrocal_diagnosis::diagnose_gated;
 use gyrocal_record::{AXES, GimbalLimits, InputRole, Record, SetupProblem, SourceText};
 use pyo3::prelude::*;
 
 use crate::axes::{Axes, GivenAxes};
 use crate::bench::HeldBench;
-use crate::diagnose::{Given, Texts, options};
+use crate::diagnose::{Given, options};
 use crate::error::{Failure, Outcome};
 use crate::origin::{json, manifest};
 use crate::record::HeldRecord;
@@ -50,7 +48,7 @@ pub(crate) fn plan(
     effects: Vec<String>,
     false_alarm: f64,
     command: &str,
-) -> PyResult<Texts> {
+) -> PyResult<String> {
     let axes = axes.map(|axes| axes.take("gyro_axes")).transpose()?;
     let given = Given {
         record: record.get(),
@@ -80,7 +78,7 @@ struct Known<'a> {
     named: Vec<NamedCause>,
 }
 
-fn answer(given: Given<'_>, request: &Request, command: &str) -> Outcome<Texts> {
+fn answer(given: Given<'_>, request: &Request, command: &str) -> Outcome<String> {
     let known = match &request.diagnosis {
         Some(diagnosis) => written(given, diagnosis)?,
         None => made(given, request)?,
@@ -100,7 +98,7 @@ fn answer(given: Given<'_>, request: &Request, command: &str) -> Outcome<Texts> 
     let axes = given.axes.map(Axes::input).transpose()?;
     inputs.extend(axes.map(|axes| axes.with_role(InputRole::GyroAxes)));
     planned.manifest = manifest(MODEL_HASH, options.seed, inputs, command);
-    Ok((json(&planned)?, json(&prose(&planned))?))
+    json(&planned)
 }
 
 fn no_plan(given: Given<'_>, source: DesignError) -> Failure {

@@ -9,7 +9,7 @@ use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
 
 use crate::error::{Class, Failure, Outcome};
-use crate::origin::{answer_text, json, manifest};
+use crate::origin::{answer_text, manifest};
 
 /// A plant that is ready to be fitted.
 #[pyclass(frozen, name = "Plant", module = "gyrocal._gyrocal")]
@@ -23,8 +23,8 @@ pub(crate) struct HeldPage {
     pub(crate) part: Outcome<Part>,
 }
 
-/// The result (JSON), its sentences (JSON), and its page.
-type Answer = (String, String, HeldPage);
+/// The result (JSON) and its page.
+type Answer = (String, HeldPage);
 
 /// The columns of a record: time, inputs, outputs and logged quantities in the order of the plant.
 #[derive(Clone, Debug)]
@@ -131,7 +131,7 @@ impl HeldPlant {
         effects.map(|effect| effect.id).collect()
     }
 
-    /// Diagnoses a record: the result (JSON), its sentences (JSON) and its page. `inputs` are names and hashes, and
+    /// Diagnoses a record: the result (JSON) and its page. `inputs` are names and hashes, and
     /// `command` is the call, both for the manifest.
     fn diagnose(
         &self,
@@ -170,9 +170,8 @@ impl HeldPlant {
         let mut diagnosed = diagnose(&self.plant, record, later, options)?;
         let part = of_plant(&diagnosed, &name, &manifest).map_err(|error| Failure::of_text(&error));
         diagnosed.answer.manifest = manifest;
-        let sentences = json(&gyrocal_words::plant::all(&diagnosed.answer))?;
         let result = answer_text(&diagnosed.answer)?;
-        Ok((result, sentences, HeldPage { part }))
+        Ok((result, HeldPage { part }))
     }
 
     fn record(&self, columns: Columns) -> Outcome<PlantRecord> {

@@ -4,17 +4,24 @@ use gyrocal_answer::read_text;
 use gyrocal_design::PlanResult;
 use gyrocal_document::Words;
 use gyrocal_fleet::FleetResult;
-use gyrocal_pages::{Part, of_calibration, of_fleet, of_plan, of_result, page};
+use gyrocal_pages::{Part, of_calibration, of_fleet, of_plan, of_result, page, read as read_part};
 use gyrocal_record::{CalibrationReport, SourceText};
 use gyrocal_report::{to_html, words_to_html};
 use pyo3::prelude::*;
 use serde::de::DeserializeOwned;
 
 use crate::error::{Failure, Outcome};
+use crate::origin::json;
 use crate::plant::HeldPage;
 
 /// A result: its class, its text (JSON) and, of a plant, its page.
 type Given<'a> = (&'a str, &'a str, Option<&'a HeldPage>);
+
+/// What is read of a result (JSON): its first screen and the sections of its page.
+#[pyfunction]
+pub(crate) fn words_of(kind: &str, result: &str) -> PyResult<String> {
+    Ok(json(&read_part(&part((kind, result, None))?))?)
+}
 
 /// An answer in words (JSON) as text for a terminal.
 #[pyfunction]

@@ -13,15 +13,6 @@ pub(crate) fn short(value: f64) -> String {
     format::short(value, 4)
 }
 
-/// A duration: seconds below an hour, hours beyond.
-pub(crate) fn duration(seconds: f64) -> String {
-    if seconds < 3600.0 {
-        format!("{} s", short(seconds))
-    } else {
-        format!("{} h", short((seconds / 360.0).round() / 10.0))
-    }
-}
-
 /// `1 effect`, `2 effects`.
 #[must_use]
 pub fn counted(count: usize, thing: &str) -> String {

@@ -1,9 +1,9 @@
 //! What people read of an answer, as plain data: sentences, tables and first screens.
 //!
 //! Everything here is made from results alone, so that a terminal, a page and a program in another
-//! language say the same words. [`diagnosis()`] gives all of an answer on a platform in reading order, and [`plant`]
-//! that on any plant, [`calibration()`] that of a calibration; whoever shows it breaks lines and draws tables. [`first_screen`] gives what a person reads
-//! first. The engines take from here the reasons that an answer carries in words.
+//! language say the same words. [`plant`] gives all of an answer on any plant in reading order, [`calibration()`]
+//! that of a calibration; of an answer on a platform `gyrocal-pages` arranges the pieces. [`first_screen`] gives what
+//! a person reads first. The engines take from here the reasons that an answer carries in words.
 //!
 //! # What it does not do
 //!
@@ -17,10 +17,10 @@ pub mod plant;
 
 pub use calibration::{calibration, calibration_screen};
 pub use diagnosis::{
-    SET_UPS_WITHOUT_ANGLES, diagnosis, explained, files, first_screen, groups, is_correlation,
-    likelihood, may_also_be, near_twins, not_settled, not_tested, over_sets, parameter_values,
-    ranking, residual_description, residuals, setup, shifts, tested, time_is_temperature, told,
-    typical_size, why_not_distinguished, would_distinguish,
+    SET_UPS_WITHOUT_ANGLES, alone, explained, files, findings, first_screen, groups,
+    is_correlation, likelihood, may_also_be, near_twins, not_settled, not_tested, over_sets,
+    parameter_values, ranking, residual_description, residuals, setup, shifts, sizes, tested,
+    time_is_temperature, typical_size, why_not_distinguished, would_distinguish,
 };
 pub use files::{command_files, few, input_files, record_and_bench};
 pub use format::{NO_P, counted, tested as tested_p};

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use gyrocal_calibration::{Options, Run, average_record};
-use gyrocal_diagnosis::Gate;
+use gyrocal_diagnosis::{CalibratedRecord, Gate};
 use gyrocal_record::{AveragedReport, Bench, Record, SetupProblem, printable_path};
 use miette::miette;
 
@@ -32,6 +32,17 @@ impl Measurement {
         Run {
             record: &self.record,
             bench: &self.bench,
+        }
+    }
+
+    pub(super) fn calibrated(&self) -> CalibratedRecord<'_> {
+        CalibratedRecord {
+            name: self.path.display().to_string(),
+            bench_name: self.bench_path.display().to_string(),
+            run: self.run(),
+            rows: self.rows,
+            averaged: self.averaged,
+            setup: &self.setup,
         }
     }
 }

@@ -18,7 +18,7 @@ const LONGEST_MEAN_S: f64 = 600.0;
 ///
 /// # Errors
 /// [`DiagnosisError`].
-pub fn diagnose_calibrated(
+pub(crate) fn diagnose_calibrated(
     file: &str,
     run: &Run<'_>,
     axes: Option<&GyroAxes>,

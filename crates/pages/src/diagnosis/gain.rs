@@ -10,19 +10,51 @@ use super::section as titled;
 use crate::panels::line;
 use crate::words::{listed, micro_g};
 
-/// `None` without a cause.
+/// `None` without a cause and a later record.
 pub(super) fn section(result: &Answer, later: Option<&LaterPrediction>) -> Option<Section> {
-    let gain = result.gain.as_ref()?;
-    let mut items = vec![Item::Chart(blocks(gain))];
+    let gain = result.gain.as_ref();
+    let mut items = Vec::new();
+    if let Some(gain) = gain {
+        items.extend([Item::text(validated(gain)), Item::Chart(blocks(gain))]);
+    }
     items.extend(later.map(|later| Item::Chart(drift(later))));
-    items.push(Item::from(figures(gain)));
-    items.push(Item::from(gyrocal_words::shifts(gain)));
+    if let Some(gain) = gain {
+        items.extend([figures(gain), gyrocal_words::shifts(gain)].map(Item::from));
+    }
+    if result.later_record.is_some() && gain.is_none_or(|gain| gain.validation.is_none()) {
+        let words = "The later record was predicted with the nominal model only: no effect is in an extended one.";
+        items.push(Item::text(words));
+    }
+    if items.is_empty() {
+        return None;
+    }
     Some(titled(
         "gain",
         "Gain",
         "What the extended model predicts better than the nominal one, in data that it was not fitted to.",
         items,
     ))
+}
+
+/// The outcome of cross-validation.
+fn validated(gain: &Gain) -> String {
+    let nats = gain.cross_validated_log_score_nats;
+    let (folds, effects) = (gain.block_log_score_nats.len(), gain.effects.join(", "));
+    let how = match gain.prediction {
+        Prediction::CrossValidated => format!("{folds}-fold blocked cross-validation"),
+        Prediction::Forward => format!("Each of {folds} blocks predicted from those before it"),
+    };
+    if nats <= 0.0 {
+        return format!(
+            "{how}: no extended model, as {effects} would not improve the predictive log score ({nats:.1} nats). \
+             What follows is of that model."
+        );
+    }
+    let improves = match gain.effects.len() {
+        1 => "improves",
+        _ => "improve",
+    };
+    format!("{how}: {effects} {improves} the predictive log score by {nats:.1} nats.")
 }
 
 fn blocks(gain: &Gain) -> Chart {
@@ -135,25 +167,30 @@ fn figures(gain: &Gain) -> Table {
             format!("{} (accelerometer noise)", micro_g(rms.noise)),
         ]
     }));
-    if let Some(later) = &gain.validation
-        && let Some(error) = &later.compensation
-    {
-        rows.push([
-            format!(
-                "attitude error in the later record after {:.1} h",
-                error.after_h
-            ),
-            format!("{:.2} arcmin", error.nominal_arcmin),
-            format!("{:.2} arcmin", error.extended_arcmin),
-            format!("{:.2} arcmin", error.expected_arcmin),
-        ]);
-        rows.push([
+    let later = gain.validation.as_ref();
+    rows.extend(
+        later
+            .and_then(|later| later.compensation.as_ref())
+            .map(|error| {
+                [
+                    format!(
+                        "attitude error in the later record after {:.1} h",
+                        error.after_h
+                    ),
+                    format!("{:.2} arcmin", error.nominal_arcmin),
+                    format!("{:.2} arcmin", error.extended_arcmin),
+                    format!("{:.2} arcmin", error.expected_arcmin),
+                ]
+            }),
+    );
+    rows.extend(later.map(|later| {
+        [
             "predictive log score of the later record, extended less nominal".to_owned(),
             String::new(),
             format!("{:+.1} nats", later.log_score_nats),
             String::new(),
-        ]);
-    }
+        ]
+    }));
     let columns = Column::heads("figure | > nominal | > extended | > expected");
     Table::new("Nominal and extended model", columns, rows)
 }

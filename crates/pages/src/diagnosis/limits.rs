@@ -1,8 +1,11 @@
 //! What a diagnosis cannot tell, and the next run.
 
+use std::collections::BTreeMap;
+
 use gyrocal_answer::{Answer, Verdict};
 use gyrocal_document::{Column, Item, List, Section, Table};
 use gyrocal_statistics::format;
+use gyrocal_words::counted;
 
 use super::section;
 use crate::unlisted::unlisted;
@@ -26,32 +29,63 @@ pub(super) fn cannot_tell(result: &Answer) -> Section {
         };
         items.push(Item::text(words.to_owned()));
     }
+    items.extend(alternatives(result).map(Item::from));
     items.extend(unlisted(result));
-    items.extend(undetected(result).map(Item::from));
+    items.extend(undetected(result));
     section(
         "limits",
         "What cannot be told apart",
-        "Effects of one group explain this record equally well, or nearly so. Effects in the table were \
-         not tested, or would not show.",
+        "Effects of one group explain this record equally well, or nearly so. Others were not tested, or would not \
+         show.",
         items,
     )
 }
 
-/// Effects that were not tested or would not be detected.
-fn undetected(result: &Answer) -> Option<Table> {
-    let rows = result.not_searched.iter().map(|effect| {
-        let mut power = result.power.iter();
-        let power = power.find(|power| power.effect == effect.effect);
-        let size = power.map_or_else(String::new, |power| {
-            format!("{} {}", format::short(power.typical_size, 3), power.unit)
-        });
-        let chance = power.and_then(|power| power.power);
-        let chance = chance.map_or_else(String::new, format::percent);
-        [effect.effect.clone(), effect.why.clone(), size, chance]
+/// What each reported effect may also be.
+fn alternatives(result: &Answer) -> Option<Table> {
+    let rows = result.findings.iter().flat_map(|finding| {
+        finding.alternatives.iter().map(|other| {
+            [
+                other.effect.clone(),
+                finding.effect.clone(),
+                gyrocal_words::likelihood(other),
+                gyrocal_words::parameter_values(&other.parameters),
+            ]
+        })
     });
+    let rows: Vec<_> = rows.collect();
+    let columns = Column::heads("effect | in the place of | likelihood | parameters");
+    (!rows.is_empty()).then(|| Table::new("Alternatives", columns, rows))
+}
+
+/// Effects that would not be detected, and those that were not tested, by reason.
+fn undetected(result: &Answer) -> Vec<Item> {
+    let mut rows: Vec<[String; 4]> = Vec::new();
+    let mut by_reason: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+    for effect in &result.not_searched {
+        let mut power = result.power.iter();
+        match power.find(|power| power.effect == effect.effect) {
+            Some(power) => rows.push([
+                effect.effect.clone(),
+                effect.why.clone(),
+                format!("{} {}", format::short(power.typical_size, 3), power.unit),
+                power.power.map_or_else(String::new, format::percent),
+            ]),
+            None => by_reason
+                .entry(&effect.why)
+                .or_default()
+                .push(&effect.effect),
+        }
+    }
     let columns = Column::heads("effect | reason | > typical size | > chance of detection");
-    let title = "Not tested, or not detectable in this record";
-    (!result.not_searched.is_empty()).then(|| Table::new(title, columns, rows))
+    let title = "Not detectable in this record";
+    let table = (!rows.is_empty()).then(|| Item::from(Table::new(title, columns, rows)));
+    let untested = by_reason.into_iter().map(|(why, effects)| {
+        let count = counted(effects.len(), "effect");
+        format!("{count} not tested ({why}): {}", effects.join(", "))
+    });
+    let untested = List::of("Not tested", untested).map(Item::from);
+    table.into_iter().chain(untested).collect()
 }
 
 /// The command that plans the next run.

@@ -2,11 +2,13 @@
 
 pub(crate) mod coefficients;
 mod covariates;
+mod findings;
 mod gain;
 mod limits;
 pub(crate) mod open_loop;
 pub(crate) mod ranking;
 mod residuals;
+mod test_table;
 
 use gyrocal_answer::{Answer, Verdict};
 use gyrocal_diagnosis::Diagnosis;
@@ -32,7 +34,7 @@ pub fn of_diagnosis(diagnosis: &Diagnosis<'_>, bench: &Bench) -> Result<Part, Pa
         effects: accepted(result),
     };
     let mut sections: Vec<Section> = open_loop::sections(&simulated)?.into();
-    sections.extend(ranked(result));
+    sections.extend(found(result));
     let fits = (&diagnosis.nominal, diagnosis.extended.as_ref());
     let convergence = coefficients::convergence(&diagnosis.record, fits)?;
     sections.extend(coefficients::section(result, convergence));
@@ -43,22 +45,19 @@ pub fn of_diagnosis(diagnosis: &Diagnosis<'_>, bench: &Bench) -> Result<Part, Pa
     let best = diagnosis.extended.as_ref().unwrap_or(&diagnosis.nominal);
     sections.push(coefficients::site(best)?);
     sections.push(limits::next_run(result));
-    sections.push(in_words(result));
     Ok(part(result, sections))
 }
 
 /// The page of a written answer on a platform: all but the charts over time, for which the record is needed.
 pub(crate) fn of_platform(result: &Answer) -> Part {
-    let mut sections = Vec::new();
+    let mut sections = found(result);
     if result.verdict != Verdict::Setup {
-        sections.extend(ranked(result));
         sections.extend(coefficients::section(result, None));
         sections.push(limits::cannot_tell(result));
         sections.push(residuals::section(result, Vec::new()));
         sections.extend(gain::section(result, None));
         sections.push(limits::next_run(result));
     }
-    sections.push(in_words(result));
     part(result, sections)
 }
 
@@ -79,19 +78,19 @@ fn part(result: &Answer, sections: Vec<Section>) -> Part {
     }
 }
 
+/// Errors of the set-up, findings, records and ranking.
+fn found(result: &Answer) -> Vec<Section> {
+    let of_records = [findings::findings(result), findings::records(result)];
+    let all = [findings::set_up(result)].into_iter().chain(of_records);
+    all.chain([ranked(result)]).flatten().collect()
+}
+
 /// The ranking with its table.
 fn ranked(result: &Answer) -> Option<Section> {
     let mut section = ranking::section(Ranked::of(result).as_ref())?;
     let table = gyrocal_words::ranking(result);
     section.items.extend(table.map(Item::from));
     Some(section)
-}
-
-/// The whole answer in sentences, without the tables that the other sections have.
-fn in_words(result: &Answer) -> Section {
-    let told = gyrocal_words::told(result).into_iter();
-    let lead = "The answer in sentences; tables of its numbers are in the sections above.";
-    section("words", "In words", lead, told.map(Item::Words).collect())
 }
 
 /// Effects in the extended model.

@@ -1,12 +1,12 @@
 //! Tests of the innovations: correlation over rows, and spectrum.
 
-use gyrocal_answer::{Answer, ResidualTest, Residuals};
+use gyrocal_answer::Answer;
 use gyrocal_diagnosis::{ChannelCorrelation, ChannelSpectrum, Diagnosis, ModelVersion};
-use gyrocal_document::{Chart, Column, Item, Level, Mark, Panel, Section, Table, Tint};
+use gyrocal_document::{Chart, Item, Level, Mark, Panel, Section, Tint};
 use gyrocal_record::AXES;
-use gyrocal_statistics::format::{self, p_cell};
+use gyrocal_statistics::format;
 
-use super::section as titled;
+use super::{section as titled, test_table};
 use crate::panels::{self, line};
 
 /// Lags of the autocorrelation.
@@ -14,11 +14,9 @@ const LAGS: usize = 40;
 /// Cycles a sidereal day, a day.
 const SIDEREAL_PER_DAY: f64 = 1.002_737_9;
 const SECONDS_PER_DAY: f64 = 86_400.0;
-/// Name of the test of correlation.
-const LJUNG_BOX: &str = "correlation over rows (Ljung-Box)";
 
 pub(super) fn section(result: &Answer, charts: Vec<Chart>) -> Section {
-    let mut items = vec![Item::from(tests(result))];
+    let mut items = vec![Item::from(test_table::table(result))];
     items.extend(charts.into_iter().map(Item::Chart));
     items.extend(gyrocal_words::residuals(result).map(Item::from));
     titled(
@@ -173,87 +171,4 @@ fn spectrum(spectra: Vec<ChannelSpectrum>, probability: f64) -> Chart {
         height_px: 210,
         ..Chart::default()
     }
-}
-
-/// A test: model, name, what was found, p-value.
-type Test = (&'static str, String, String, f64);
-
-/// The tests in a table.
-fn tests(result: &Answer) -> Table {
-    let mut all = Vec::new();
-    if let Some(residuals) = &result.residuals {
-        all.extend(of_nominal(residuals));
-    }
-    all.extend(of_remainder(&result.remainder));
-    all.extend(result.norm.as_ref().map(|norm| {
-        let name = "magnitude of specific force (accelerometers alone)".to_owned();
-        ("none", name, String::new(), norm.p_value)
-    }));
-    let rows = all
-        .into_iter()
-        .map(|(model, name, found, p)| [model.to_owned(), name, found, p_cell(p)]);
-    let columns = Column::heads("model | test | found | > p");
-    Table::new("Tests, and probability of as much by chance", columns, rows)
-}
-
-fn ljung_box(statistic: f64, degrees_of_freedom: usize) -> String {
-    format!("{statistic:.0} for {degrees_of_freedom} degrees of freedom")
-}
-
-fn line_of(period_h: f64, amplitude: f64) -> String {
-    format!(
-        "period {} h, amplitude {} σ",
-        format::short(period_h, 3),
-        format::short(amplitude, 2)
-    )
-}
-
-fn of_nominal(residuals: &Residuals) -> Vec<Test> {
-    let mut tests = Vec::new();
-    let mut add = |name: String, found, p| tests.push(("nominal", name, found, p));
-    if let Some(nis) = &residuals.nis {
-        let [low, high] = nis.band;
-        let found = format!("{:.3} (band {low:.3} to {high:.3})", nis.mean);
-        add(
-            "mean normalised innovation squared".to_owned(),
-            found,
-            nis.p_value,
-        );
-    }
-    if let Some(all) = &residuals.autocorrelation {
-        let found = ljung_box(all.ljung_box, all.degrees_of_freedom);
-        add(LJUNG_BOX.to_owned(), found, all.p_value);
-    }
-    for (line, axis) in residuals.lines.iter().flatten().zip(AXES) {
-        let found = line_of(line.period_h, line.amplitude);
-        add(
-            format!("largest spectral line, axis {axis}"),
-            found,
-            line.p_value,
-        );
-    }
-    tests
-}
-
-fn of_remainder(remainder: &ResidualTest) -> Vec<Test> {
-    let mut tests = Vec::new();
-    let mut add = |name: &str, found, p| tests.push(("with all causes", name.to_owned(), found, p));
-    if let Some(line) = &remainder.line {
-        let found = line_of(line.period_h, line.amplitude);
-        let found = format!("axis {}, {found}", line.channel);
-        add("largest spectral line", found, line.p_value);
-    }
-    if let Some(all) = &remainder.correlation {
-        let found = ljung_box(all.ljung_box, all.degrees_of_freedom);
-        add(LJUNG_BOX, found, all.p_value);
-    }
-    for term in &remainder.unmodelled {
-        let name = format!("outside of the catalogue, {}", term.channel);
-        let size = format!("{} {}", format::significant(term.size, 3), term.unit);
-        add(&name, size, term.p_value);
-    }
-    if let Some(p) = remainder.p_value {
-        add("all residual tests together", String::new(), p);
-    }
-    tests
 }

@@ -49,6 +49,18 @@ pub(super) fn first(answer: &TumbleAnswer<'_>) -> Screen {
 /// A term with its estimate and sigma, unit, p-value, and the names of what it may also be.
 type Term<'a> = (&'a str, [f64; 2], &'a str, f64, Vec<&'a str>);
 
+/// The terms of a report with the name of each alternative: reports of many and of few positions are two types.
+macro_rules! terms {
+    ($report:expr, $name:expr) => {{
+        let terms = $report.findings.iter().map(|one| -> Term<'_> {
+            let names = one.alternatives.iter().map($name).collect();
+            let estimate = [one.estimate, one.sigma];
+            (&one.effect, estimate, &one.unit, one.p_value, names)
+        });
+        terms.collect::<Vec<_>>()
+    }};
+}
+
 fn verdict(terms: &[Term<'_>]) -> Screen {
     let what = format!(
         "the nominal drift law lacks {}",
@@ -77,18 +89,7 @@ fn verdict(terms: &[Term<'_>]) -> Screen {
 }
 
 fn many(report: &MultiPositionReport) -> Screen {
-    let terms = report.findings.iter().map(|one| -> Term<'_> {
-        let names = one.alternatives.iter().map(|other| &*other.effect);
-        let estimate = [one.estimate, one.sigma];
-        (
-            &one.effect,
-            estimate,
-            &one.unit,
-            one.p_value,
-            names.collect(),
-        )
-    });
-    let mut screen = verdict(&terms.collect::<Vec<_>>());
+    let mut screen = verdict(&terms!(report, |other| &*other.effect));
     for one in &report.log_biases {
         let differences = one.differences_deg_per_h.iter().zip(&one.sigmas_deg_per_h);
         let differences: Vec<String> = differences
@@ -135,18 +136,7 @@ fn many(report: &MultiPositionReport) -> Screen {
 }
 
 fn few_positions(report: &FewPositionReport) -> Screen {
-    let terms = report.findings.iter().map(|one| -> Term<'_> {
-        let names = one.alternatives.iter().map(|name| &**name);
-        let estimate = [one.estimate, one.sigma];
-        (
-            &one.effect,
-            estimate,
-            &one.unit,
-            one.p_value,
-            names.collect(),
-        )
-    });
-    let mut screen = verdict(&terms.collect::<Vec<_>>());
+    let mut screen = verdict(&terms!(report, |name| &**name));
     for gyro in &report.gyros {
         let law = gyro.coefficients.iter().take(NAMES_SHOWN).map(|one| {
             let size = format::with_sigma(one.estimate, one.sigma);

@@ -229,7 +229,7 @@ def plan(
     command = _call(plan, locals())
     if diagnosis is not None and (effects or false_alarm != 0.01):
         raise InputError("plan: effects and false_alarm are those of the diagnosis that is given")
-    answer = _gyrocal.plan(
+    text = _gyrocal.plan(
         as_record(record)._held,
         as_bench(bench)._held,
         None if gyro_axes is None else as_axes(gyro_axes, "gyro_axes"),
@@ -243,7 +243,7 @@ def plan(
         false_alarm,
         command,
     )
-    return Plan(*answer)
+    return Plan(text)
 
 
 def characterise(

@@ -92,22 +92,20 @@ def _wrapped(value: Any) -> Any:
 class Result(Fields):
     """A result. Its keys, those of the JSON contract of the command, are attributes.
 
-    ``str`` gives the sentences and tables of the command; a notebook shows them.
+    ``str`` gives the first screen and the sections of the page; a notebook shows them.
     """
 
-    __slots__ = ("_blocks", "_text")
-    _blocks: str | None
+    __slots__ = ("_text",)
     _text: str
     schema_version: int
     manifest: Fields
 
-    def __init__(self, text: str, blocks: str | None = None) -> None:
+    def __init__(self, text: str) -> None:
         super().__init__(json.loads(text))
         object.__setattr__(self, "_text", text)
-        object.__setattr__(self, "_blocks", blocks)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return type(self), (self._text, self._blocks)
+        return type(self), (self._text,)
 
     def to_dict(self) -> dict[str, Any]:
         """The result as plain data, equal to the JSON that the command writes."""
@@ -140,7 +138,7 @@ class Result(Fields):
 
     def _shown(self) -> list[dict[str, Any]]:
         """Sentences and tables."""
-        return json.loads(self._blocks or "[]")
+        return json.loads(_gyrocal.words_of(type(self).__name__, self._text))
 
     def __str__(self) -> str:
         return _gyrocal.text_of(json.dumps(self._shown())).rstrip("\n")
@@ -201,8 +199,8 @@ class Diagnosis(Result):
     threshold: float | None
     search_complete: bool
 
-    def __init__(self, text: str, blocks: str | None = None, scores: bytes | None = None) -> None:
-        super().__init__(text, blocks)
+    def __init__(self, text: str, scores: bytes | None = None) -> None:
+        super().__init__(text)
         object.__setattr__(self, "_scores", None if scores is None else bytes(scores))
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -266,22 +264,6 @@ class Calibration(Result):
     def _rows(self) -> list[dict[str, Any]]:
         """One row a coefficient."""
         return self.to_dict()["coefficients"]
-
-    def _shown(self) -> list[dict[str, Any]]:
-        cells = [
-            [
-                one["name"],
-                f"{one['estimate']:.6f}",
-                f"{one['sigma']:.2g}",
-                one["unit"],
-                "yes" if one["determined"] else "no",
-            ]
-            for one in self._fields["coefficients"]
-        ]
-        heads = ["coefficient", "estimate", "sigma", "unit", "determined"]
-        blocks: list[dict[str, Any]] = [{"paragraph": self.verdict_text}]
-        table = _table("Drift coefficients", heads, ("estimate", "sigma"), cells)
-        return [*blocks, table] if cells else blocks
 
     def __repr__(self) -> str:
         return f"<gyrocal.Calibration {self.verdict}: {len(self.names)} coefficients>"
@@ -404,10 +386,8 @@ class PlantDiagnosis(Result):
     remainder: Fields
     later_record: Fields | None
 
-    def __init__(
-        self, text: str, blocks: str | None = None, charts: _gyrocal.PlantPage | None = None
-    ) -> None:
-        super().__init__(text, blocks)
+    def __init__(self, text: str, charts: _gyrocal.PlantPage | None = None) -> None:
+        super().__init__(text)
         object.__setattr__(self, "_charts", charts)
 
     @property
@@ -417,10 +397,6 @@ class PlantDiagnosis(Result):
 
     def _page(self) -> _gyrocal.PlantPage | None:
         return self._charts
-
-    def _shown(self) -> list[dict[str, Any]]:
-        """Sentences."""
-        return [{"paragraph": sentence} for sentence in super()._shown()]
 
     def _rows(self) -> list[dict[str, Any]]:
         """One row a finding; its parameters are columns."""

@@ -219,7 +219,7 @@ def summarise(
     command = _call(summarise, locals())
     records = [_summarised(row) for batch in _batches(results) for row in batch.to_pylist()]
     return Fleet(
-        *_gyrocal.summarise_fleet(
+        _gyrocal.summarise_fleet(
             records, false_discovery_rate, group_probability, outlier_probability, seed, command
         )
     )

@@ -271,8 +271,7 @@ mod tests {
     use super::super::templates::words_to_html;
     use super::*;
     use gyrocal_document::{
-        Bar, BarGroup, Bars, Column, Entry, Line, LineKind, List, Origin, Screen, Table, Tint,
-        Words,
+        Bar, BarGroup, Bars, Column, Line, LineKind, List, Origin, Screen, Table, Tint, Words,
     };
 
     /// A text that a page must neither obey nor drop.
@@ -308,10 +307,9 @@ mod tests {
         let pieces = [
             Words::Paragraph(own()),
             Words::Command(own()),
-            Words::Entry(Entry {
-                number: 1,
+            Words::List(List {
                 title: own(),
-                paragraphs: vec![own()],
+                entries: vec![own()],
             }),
             Words::Table(Table::new(HOSTILE, vec![Column::words(HOSTILE)], [[own()]])),
         ];
@@ -320,7 +318,7 @@ mod tests {
             !html.contains("own-tag>") && !html.contains('\u{202e}'),
             "{html}"
         );
-        // Command, paragraph, title and paragraph of the entry, title, head and cell of the table.
+        // Command, paragraph, title and entry of the list, title, head and cell of the table.
         assert_eq!(html.matches("own-tag&gt;").count(), 7, "{html}");
     }
 

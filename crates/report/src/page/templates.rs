@@ -1,6 +1,6 @@
 //! Templates, and the pieces of an answer in words that they show.
 
-use gyrocal_document::{List, Words};
+use gyrocal_document::Words;
 use gyrocal_record::printable;
 use minijinja::{AutoEscape, Environment, context};
 use serde_json::{Value, json};
@@ -51,14 +51,6 @@ pub(super) fn of_words(words: &Words) -> Value {
     match words {
         Words::Paragraph(text) => json!({ "kind": "text", "text": text }),
         Words::Command(text) => json!({ "kind": "command", "text": text }),
-        Words::Entry(entry) => {
-            let title = format!("{}. {}", entry.number, entry.title);
-            let list = List {
-                title,
-                entries: entry.paragraphs.clone(),
-            };
-            json!({ "kind": "list", "list": list })
-        }
         Words::List(list) => json!({ "kind": "list", "list": list }),
         Words::Table(table) => json!({ "kind": "table", "table": table }),
     }

@@ -33,8 +33,10 @@ pub(super) fn meaning(name: &str) -> &'static str {
     all.find(|one| one.id == name).map_or("", |one| one.doc)
 }
 
-/// Places of D_F and D_I of gyros x, y, z among the coefficients.
-const BIASES: [usize; 3] = [index::GYRO_X_BIAS, index::GYRO_Y_BIAS, index::GYRO_Z_BIAS];
+/// Unit of constant drifts, and of no other coefficient.
+const OF_CONSTANT: &str = "deg/h";
+
+/// Places of D_I of gyros x, y, z among the coefficients.
 pub(super) const MASS_UNBALANCES: [usize; 3] =
     [index::GYRO_X_G_X, index::GYRO_Y_G_Y, index::GYRO_Z_G_Z];
 
@@ -111,9 +113,9 @@ fn turn_ons(report: &CalibrationReport) -> Option<Table> {
 fn first_record(report: &CalibrationReport) -> Option<Table> {
     let alone = report.first_record_sigmas.as_ref()?;
     let differ = report.runs.iter().any(|run| run.turn_on.is_some());
-    let pairs = report.coefficients.iter().zip(alone).enumerate();
-    let rows = pairs.filter(|(place, _)| !(differ && BIASES.contains(place)));
-    let rows = rows.map(|(_, (one, alone))| {
+    let pairs = report.coefficients.iter().zip(alone);
+    let rows = pairs.filter(|(one, _)| !(differ && one.unit == OF_CONSTANT));
+    let rows = rows.map(|(one, alone)| {
         [
             one.name.clone(),
             format::estimate(0.0, *alone)[1].clone(),

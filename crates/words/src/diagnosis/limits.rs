@@ -1,20 +1,8 @@
 //! Limits of the answer: effects that are indistinguishable, undetectable or untested.
 
-use std::collections::BTreeMap;
-
 use gyrocal_statistics::format::percent;
 
 use gyrocal_answer::{Answer, Experiment, ExperimentKind, NotTestedReason};
-use gyrocal_document::{List, Words};
-
-/// Groups of indistinguishable effects, each with the experiment that would distinguish them.
-pub(super) fn indistinguishable(result: &Answer) -> Option<Words> {
-    let entries = groups(result).into_iter();
-    let entries =
-        entries.map(|[members, why, words]| format!("{members}: {why}. Experiment: {words}."));
-    let title = "Not distinguishable, and the experiment that would distinguish them";
-    List::of(title, entries).map(Words::List)
-}
 
 /// Groups of effects and of set-ups that the record does not distinguish: their names, why, and the experiment that
 /// would distinguish them.
@@ -33,20 +21,6 @@ pub fn groups(result: &Answer) -> Vec<[String; 3]> {
         [one.members.join(", "), one.why.clone(), words]
     });
     effects.chain(set_ups).collect()
-}
-
-/// Effects that were not tested or are not detectable, by reason.
-pub(super) fn untested(result: &Answer) -> Option<Words> {
-    let mut by_reason: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
-    for effect in &result.not_searched {
-        by_reason
-            .entry(&effect.why)
-            .or_default()
-            .push(&effect.effect);
-    }
-    let entries = by_reason.into_iter();
-    let entries = entries.map(|(why, effects)| format!("{}: {why}", effects.join(", ")));
-    List::of("Not tested, or not detectable in this record", entries).map(Words::List)
 }
 
 /// Why set-ups are not distinguished where no angles are declared.

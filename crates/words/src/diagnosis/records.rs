@@ -4,10 +4,10 @@ use gyrocal_statistics::format::with_sigma;
 
 use crate::files::{input_files, record_and_bench};
 use gyrocal_answer::{Answer, Finding, FindingKind, SizeChoice, Verdict};
-use gyrocal_document::{Column, Table};
 
 /// Whether an effect has one size in all records, and its sizes in each.
-pub(super) fn sizes(finding: &Finding) -> Option<String> {
+#[must_use]
+pub fn sizes(finding: &Finding) -> Option<String> {
     let found = finding.by_record.as_ref()?;
     let odds = found.log_odds_nats.abs();
     let words = match found.choice {
@@ -38,35 +38,9 @@ pub(super) fn sizes(finding: &Finding) -> Option<String> {
     Some(format!("{words}: {}{unit}", sizes.join(", ")))
 }
 
-/// Each record with what it tells alone.
-pub(super) fn table(result: &Answer) -> Option<Table> {
-    if result.records.is_empty() {
-        return None;
-    }
-    let records = result.records.iter().enumerate();
-    Some(Table::new(
-        "Each record alone",
-        vec![
-            Column::numbers("record"),
-            Column::words("name"),
-            Column::numbers("rows"),
-            Column::words("alone"),
-        ],
-        records.map(|(index, one)| {
-            vec![
-                (index + 1).to_string(),
-                one.name.clone(),
-                one.record.rows.to_string(),
-                one.alone
-                    .as_ref()
-                    .map_or_else(|| one.why_not_alone.clone(), alone),
-            ]
-        }),
-    ))
-}
-
 /// The answer of a record alone, in a few words.
-fn alone(result: &Answer) -> String {
+#[must_use]
+pub fn alone(result: &Answer) -> String {
     match result.verdict {
         Verdict::Clean if result.hides_most() => "too short to tell".to_owned(),
         Verdict::Clean => "no fault found".to_owned(),

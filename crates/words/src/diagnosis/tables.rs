@@ -4,12 +4,12 @@ use gyrocal_record::AXES;
 use gyrocal_statistics::format::{self, p_cell};
 
 use super::catalogue::is_correlation;
-use super::findings::{likelihood, value};
-use crate::format::{short, with_sigma};
+use super::findings::value;
+use crate::format::with_sigma;
 use gyrocal_answer::{
     Answer, CoefficientEstimate, Coefficients, Finding, FindingKind, Gain, NoiseLevel, Residuals,
 };
-use gyrocal_document::{Column, Table, Words};
+use gyrocal_document::{Column, Table};
 
 /// Rows of the ranking that are shown.
 const TOP: usize = 12;
@@ -17,25 +17,15 @@ const TOP: usize = 12;
 /// An interval that spans more than this factor says that the record does not determine the noise.
 const UNDETERMINED: f64 = 100.0;
 
-/// All tables but that of the findings.
-pub(super) fn all(result: &Answer) -> impl Iterator<Item = Words> {
-    let coefficients = result.coefficients.as_ref().and_then(over_sets);
-    let gain = result.gain.as_ref().map(shifts);
-    let tables = [coefficients, ranking(result), gain];
-    let tables = tables.into_iter().flatten().chain(residuals(result));
-    tables.map(Words::Table)
-}
-
 /// What the nominal model leaves of the record, and the noise.
 pub fn residuals(result: &Answer) -> impl Iterator<Item = Table> {
-    let of_nominal = result
-        .residuals
-        .as_ref()
-        .map(|shown| of_nominal(shown, result.record.duration_s / 3600.0));
+    let of_nominal = result.residuals.as_ref().map(of_nominal);
     of_nominal.into_iter().chain(noise(result))
 }
 
-pub(super) fn findings(result: &Answer) -> Option<Table> {
+/// The detected effects with size, significance and gain; `None` without any.
+#[must_use]
+pub fn findings(result: &Answer) -> Option<Table> {
     let columns =
         Column::heads("effect | parameter | > estimate | unit | > z | > p | > gain, nats");
     let mut rows = Vec::new();
@@ -64,7 +54,7 @@ pub(super) fn findings(result: &Answer) -> Option<Table> {
             rows.push(vec![effect, name, value, unit, z, p, gain]);
         }
     }
-    (!rows.is_empty()).then(|| Table::new("Findings", columns, rows))
+    (!rows.is_empty()).then(|| Table::new("Size and significance", columns, rows))
 }
 
 /// The coefficients of the extended model with their intervals over the sets; `None` if no effect was accepted.
@@ -105,21 +95,7 @@ fn gain(finding: &Finding) -> String {
     }
 }
 
-fn of_nominal(shown: &Residuals, duration_h: f64) -> Table {
-    let nis = shown.nis.map_or_else(String::new, |nis| {
-        let [low, high] = nis.band;
-        format!(
-            "; mean NIS {:.3} (acceptance band {low:.3} to {high:.3})",
-            nis.mean
-        )
-    });
-    let correlation = shown.autocorrelation.as_ref();
-    let ljung_box = correlation.map_or_else(String::new, |found| {
-        format!(
-            "; Ljung-Box {:.0} for {} degrees of freedom",
-            found.ljung_box, found.degrees_of_freedom
-        )
-    });
+fn of_nominal(shown: &Residuals) -> Table {
     let mut rows: Vec<Vec<String>> = Vec::new();
     let mut row = |name: String, cells: [String; 3]| {
         rows.push(core::iter::once(name).chain(cells).collect());
@@ -128,23 +104,11 @@ fn of_nominal(shown: &Residuals, duration_h: f64) -> Table {
         "open-loop simulation error, g rms".to_owned(),
         shown.free_run_rms_g.map(|rms| format!("{rms:.2e}")),
     );
+    let correlation = shown.autocorrelation.as_ref();
     if let Some(first) = correlation.and_then(|found| found.correlation.first()) {
         row(
             "lag-1 correlation".to_owned(),
             first.map(|correlation| format!("{correlation:+.3}")),
-        );
-    }
-    if let Some(lines) = &shown.lines {
-        row(
-            "largest spectral line: period, p".to_owned(),
-            lines.map(|line| {
-                let period = if line.period_h > duration_h {
-                    "longer than the record".to_owned()
-                } else {
-                    format!("{} h", short(line.period_h))
-                };
-                format!("{period}, {}", p_cell(line.p_value))
-            }),
         );
     }
     for against in &shown.against {
@@ -161,11 +125,7 @@ fn of_nominal(shown: &Residuals, duration_h: f64) -> Table {
             against.p_value.map(p_cell),
         );
     }
-    Table::new(
-        &format!("Residuals of the nominal model{nis}{ljung_box}"),
-        by_axis(),
-        rows,
-    )
+    Table::new("Residuals of the nominal model", by_axis(), rows)
 }
 
 /// The first effects of the search by their statistics; `None` without a search.
@@ -198,9 +158,12 @@ fn role(result: &Answer, effect: &str) -> String {
         if finding.effect == effect {
             return "detected".to_owned();
         }
-        let mut others = finding.alternatives.iter();
-        if let Some(other) = others.find(|other| other.effect == effect) {
-            return format!("alternative to {}, {}", finding.effect, likelihood(other));
+        if finding
+            .alternatives
+            .iter()
+            .any(|other| other.effect == effect)
+        {
+            return format!("alternative to {}", finding.effect);
         }
     }
     String::new()

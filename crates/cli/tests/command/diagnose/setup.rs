@@ -47,7 +47,8 @@ fn a_wrong_latitude_stops_both_commands() {
     negate_latitude(&folder);
     let (said, report) = stopped(&folder);
     assert!(
-        said.contains("Error of the set-up: the record was not diagnosed."),
+        said.starts_with("SET-UP WRONG  the record was not diagnosed")
+            && said.contains("\nErrors of the set-up:\n - "),
         "{said}"
     );
     assert_eq!(report.setup[0].kind, "latitude");

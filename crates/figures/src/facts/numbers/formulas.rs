@@ -1,10 +1,11 @@
 //! Longer rules.
 
+use gyrocal::generated::platform::DRIFT;
 use gyrocal_statistics::{
     Proportion, chi_square_band, chi_square_two_sided_p, rms_ratio_interval, student_quantile,
 };
 
-use super::{Checks, Part, Span, captured, over};
+use super::{Checks, Part, Span, captured, name_of, over};
 use crate::facts::values::leading;
 
 /// False alarm of the bands of a mean NIS and a mean NEES.
@@ -96,7 +97,10 @@ pub(super) fn findings(part: &Part, to: &mut Checks) {
 /// Geometric means of ratios of sigmas, and the same ratios in the bars and in words.
 pub(super) fn plan(part: &Part, to: &mut Checks) {
     let mean = |head: &str| {
-        let ratios = part.rows("best run").map(|(table, row)| {
+        // Of the nine coefficients, and not of the sizes of effects below them.
+        let is_nominal = |row: &[String]| DRIFT.iter().any(|one| one.id == name_of(row));
+        let rows = part.rows("best run");
+        let ratios = rows.filter(|(_, row)| is_nominal(row)).map(|(table, row)| {
             let pair = [head, "now"].map(|head| table.number(row, head));
             over(&pair, |x| (x[0] / x[1]).ln())
         });

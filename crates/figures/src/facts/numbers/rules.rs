@@ -151,11 +151,10 @@ pub(super) const RULES: [Rule; 19] = [
     (
         "effects ranked and left out, not tested, missing",
         |part, to| {
-            // Others were tested, and would not show.
-            let untested = part
-                .rows("typical size")
-                .filter(|(_, row)| row[2].is_empty());
-            let untested = untested.count() as f64;
+            let reasons = ["# effect not tested (", "# effects not tested ("];
+            let counts = reasons.map(|pattern| part.found(pattern).concat());
+            let counts: Vec<_> = counts.concat().into_iter().map(Some).collect();
+            let untested = over(&counts, |x| x.iter().map(|count| count.round()).sum());
             let rows = |head: &str| part.rows(head).count() as f64;
             let bars = part.rows("score statistic*");
             let bars = bars.filter(|(table, row)| table.number(row, "value").is_some());
@@ -176,7 +175,7 @@ pub(super) const RULES: [Rule; 19] = [
             to.is(
                 "not tested",
                 part.first("# effects (missing inputs"),
-                Some([untested; 2]),
+                untested,
             );
             to.is(
                 "missing",
@@ -189,7 +188,17 @@ pub(super) const RULES: [Rule; 19] = [
         "statistic or likelihood of an effect in another table",
         |part, to| {
             to.columns(part, "statistic", &["value"], |x| x[0]);
-            to.columns(part, "", &["remark"], |x| x[0]);
+            // That of an alternative of several is of the first.
+            let mut names = BTreeSet::new();
+            for (table, row) in part.rows("likelihood") {
+                let remark = part.elsewhere(name_of(row), "remark");
+                let remark = remark.filter(|_| names.insert(name_of(row)));
+                to.is(
+                    name_of(row),
+                    table.number(row, "likelihood"),
+                    remark.map(|found| found.1),
+                );
+            }
         },
     ),
     ("autocorrelations outside by chance", |part, to| {

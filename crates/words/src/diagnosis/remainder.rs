@@ -1,0 +1,66 @@
+//! What a residual test found.
+
+use gyrocal_answer::{ResidualTest, ResidualVerdict, UnmodelledPattern, UnmodelledTerm};
+
+/// The structure that a residual test found, or the tests that it could not make; empty if the
+/// innovations are white.
+#[must_use]
+pub fn residual_description(test: &ResidualTest) -> String {
+    match test.verdict {
+        ResidualVerdict::White => String::new(),
+        ResidualVerdict::NotTested => {
+            let missing = [
+                (test.line.is_none(), "spectral lines"),
+                (
+                    test.correlation.is_none(),
+                    "correlation of neighbouring rows",
+                ),
+            ];
+            let missing = missing.iter().filter(|(missing, _)| *missing);
+            let missing: Vec<&str> = missing.map(|(_, test)| *test).collect();
+            missing.join(" and ")
+        }
+        ResidualVerdict::Unexplained => {
+            let line = test.line.as_ref().filter(|line| line.significant);
+            let line = line.map(|line| {
+                format!(
+                    "a spectral line in the innovations of channel {} with a period of {:.2} h and \
+                     an amplitude of {:.2} sigma",
+                    line.channel, line.period_h, line.amplitude
+                )
+            });
+            let correlation = test.correlation.filter(|found| found.significant);
+            let correlation = correlation.map(|found| {
+                format!(
+                    "innovations of neighbouring rows are correlated (Ljung-Box {:.0} for {} degrees \
+                     of freedom)",
+                    found.ljung_box, found.degrees_of_freedom
+                )
+            });
+            let terms = test.unmodelled.iter().map(unmodelled);
+            let all: Vec<String> = line.into_iter().chain(correlation).chain(terms).collect();
+            all.join("; ")
+        }
+    }
+}
+
+/// A term that the catalogue does not hold.
+fn unmodelled(term: &UnmodelledTerm) -> String {
+    let channel = match term.channel.split_once('_') {
+        Some(("gyro", axis)) => format!("drift of gyro {axis}"),
+        Some(("accel", axis)) => format!("reading of accelerometer {axis}"),
+        _ => term.channel.clone(),
+    };
+    let (size, unit) = (term.size, &term.unit);
+    match (term.pattern, term.period_h, &term.depends_on) {
+        (UnmodelledPattern::Line, Some(period_h), _) => format!(
+            "a line in the {channel} with a period of {period_h:.2} h and an amplitude of {size:.2e} \
+             {unit}"
+        ),
+        (UnmodelledPattern::Curve, _, Some(axis)) => format!(
+            "the {channel} depends on specific force along {axis} as no polynomial of the catalogue \
+             does, {size:.2e} {unit} rms"
+        ),
+        _ => format!("a term in the {channel} of {size:.2e} {unit}"),
+    }
+}
