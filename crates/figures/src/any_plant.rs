@@ -5,6 +5,7 @@ mod gauges;
 pub(crate) mod hidden;
 mod oracle;
 mod second;
+mod unknown;
 
 use gyrocal_evaluation::Statistic;
 use gyrocal_plant::{FittedPlant, LoadedPlant, PlantError, PlantRecord, SearchOptions, diagnose};
@@ -42,6 +43,7 @@ pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
     figures.extend(context.measure(&hidden::population(&plants)?, &hidden::rows())?);
     figures.push(gauges::figure(&plants)?);
     figures.extend(starts(context, &plants)?);
+    figures.extend(unknown::figures(context, &plants)?);
     figures.push(effort::lines()?);
     figures.push(effort::duration()?.timed(context.is_small()));
     figures.push(effort::interpreted(&plants[Kind::Duffing as usize])?);
