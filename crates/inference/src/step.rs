@@ -4,7 +4,7 @@ use gyrocal_estimation::{
     Corrected, Derivatives, EstimationError, Integration, Integrator, Manifold,
 };
 
-use crate::trajectory::Series;
+use crate::series::Series;
 
 /// Most parts of one interval; more are a mistake in the times or in the longest step.
 const MAX_PARTS: f64 = 1e6;

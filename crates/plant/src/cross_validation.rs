@@ -8,9 +8,9 @@ use gyrocal_inference::{Pass, Reduced};
 use gyrocal_statistics::math::ln;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-use crate::dynamics::reduce;
 use crate::error::PlantError;
 use crate::fitted::FittedPlant;
+use crate::linearised::reduce;
 use crate::prediction::least_prior;
 
 /// Parts of one record; of several each is a part.

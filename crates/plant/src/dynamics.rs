@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
-use gyrocal_inference::{Column, Layout, LinearisedRows, Pass, Reduced};
+use gyrocal_inference::{Layout, LinearisedRows};
 
 use crate::error::PlantError;
 use crate::functions::{Functions, OutputsAt, Point, RatesAt, Sizes, Workspace};
+use crate::linearised::Linearised;
 use crate::lines::Course;
 use crate::loaded::LoadedPlant;
 use crate::record::PlantRecord;
@@ -17,45 +18,6 @@ const STAGES: [(f64, f64); 4] = [
     (0.5, 1.0 / 3.0),
     (1.0, 1.0 / 6.0),
 ];
-
-/// A plant about a trajectory.
-#[derive(Clone, Debug)]
-pub(crate) struct Linearised {
-    pub(crate) rows: LinearisedRows,
-    /// For each step the derivative of the next states by the noises, each held over the step, times their declared
-    /// standard deviations there, by rows.
-    pub(crate) by_noises: Vec<f64>,
-}
-
-impl Linearised {
-    /// A pass with some columns and a noise.
-    pub(crate) fn pass<'p>(&'p self, noise: &'p FittedNoise, lines: &'p [Column]) -> Pass<'p> {
-        Pass {
-            factors: &noise.factors,
-            loose: &noise.loose,
-            ..Pass::new(&self.rows, lines)
-        }
-    }
-}
-
-/// FittedNoise of a fit.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct FittedNoise {
-    /// Variances over the declared ones: outputs, then noises of rates.
-    pub(crate) factors: Vec<f64>,
-    /// Further variance of each state in each step, while a fit is on its way; none else.
-    pub(crate) loose: Vec<f64>,
-}
-
-/// Eliminates the states.
-///
-/// # Errors
-/// [`PlantError::Singular`] if the numbers do not suffice.
-pub(crate) fn reduce(pass: &Pass<'_>) -> Result<Reduced, PlantError> {
-    let reduced = pass.reduce(|_| ()).map_err(|_| PlantError::Singular)?;
-    let is_finite = reduced.gram.iter().all(|value| value.is_finite());
-    is_finite.then_some(reduced).ok_or(PlantError::Singular)
-}
 
 /// Evaluation of a plant along a record.
 pub(crate) struct Dynamics<'a> {

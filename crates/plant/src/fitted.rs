@@ -8,9 +8,10 @@ use gyrocal_answer::Starts;
 use gyrocal_hypothesis::{Column, FittedModel, ModelExtension, RateNoise, Rows};
 use nalgebra::DMatrix;
 
-use crate::dynamics::{Dynamics, Linearised, reduce};
+use crate::dynamics::Dynamics;
 use crate::error::PlantError;
 use crate::later_starts::eliminated;
+use crate::linearised::{Linearised, reduce};
 use crate::lines::of_search;
 use crate::loaded::LoadedPlant;
 use crate::problem::Problem;

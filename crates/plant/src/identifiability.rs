@@ -8,7 +8,7 @@
 
 use std::sync::Arc;
 
-use crate::dynamics::reduce;
+use crate::linearised::reduce;
 use gyrocal_answer::{NullDirection, NullPart};
 use gyrocal_hypothesis::ModelExtension;
 use gyrocal_statistics::deviates::Draw;

@@ -55,6 +55,7 @@ mod identifiability;
 mod input_errors;
 mod interpreted;
 mod later_starts;
+mod linearised;
 mod lines;
 mod loaded;
 mod next_run;

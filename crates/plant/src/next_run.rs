@@ -7,7 +7,7 @@
 
 use std::sync::Arc;
 
-use crate::dynamics::reduce;
+use crate::linearised::reduce;
 use gyrocal_answer::{AlternativeKind, Coefficients, Finding, NextRun, NextSigma, ToldApart};
 use gyrocal_hypothesis::{CONFIDENCE_SET_DEVIANCE, FittedModel as _};
 use gyrocal_inference::Column;

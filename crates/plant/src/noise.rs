@@ -5,8 +5,8 @@ use gyrocal_inference::{Asked, Column, NoiseScore, Reduced, Restricted, UnknownN
 use gyrocal_statistics::math::{exp, ln};
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-use crate::dynamics::{FittedNoise, Linearised, reduce};
 use crate::error::PlantError;
+use crate::linearised::{FittedNoise, Linearised, reduce};
 use crate::problem::Problem;
 
 /// Standard deviation of the logarithm of a noise over the declared one before a record.

@@ -13,9 +13,10 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 
 use crate::catalogue::Modulation;
 use crate::description::{Kind, State};
-use crate::dynamics::{Dynamics, reduce};
+use crate::dynamics::Dynamics;
 use crate::error::PlantError;
 use crate::fitted::FittedPlant;
+use crate::linearised::reduce;
 use crate::lines::{Course, initial, of_parameters, parameters_of, profile};
 use crate::loaded::LoadedPlant;
 use crate::problem::Problem;

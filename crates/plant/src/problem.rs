@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use gyrocal_hypothesis::{Column, ModelExtension, Rows};
 
-use crate::dynamics::FittedNoise;
+use crate::linearised::FittedNoise;
 use crate::lines::{of_parameters, of_search};
 use crate::loaded::LoadedPlant;
 use crate::record::PlantRecord;

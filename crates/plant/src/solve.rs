@@ -12,8 +12,9 @@ use gyrocal_hypothesis::{Column, ModelExtension};
 use gyrocal_inference::Pass;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-use crate::dynamics::{Dynamics, FittedNoise, Linearised, reduce};
+use crate::dynamics::Dynamics;
 use crate::error::PlantError;
+use crate::linearised::{FittedNoise, Linearised, reduce};
 use crate::lines::{Course, parameters_of};
 use crate::problem::Problem;
 
@@ -304,9 +305,8 @@ impl<'a> Solver<'a> {
         if !self.noise.loose.is_empty() {
             let loose = DVector::from_row_slice(&self.noise.loose);
             let mut covariance = DMatrix::from_diagonal(&loose);
-            for k in 0..w {
-                let own = by_noises.column(k);
-                covariance.ger(factors[k], &own, &own, 1.0);
+            for (own, factor) in by_noises.column_iter().zip(factors) {
+                covariance.ger(*factor, &own, &own, 1.0);
             }
             let cost = Cholesky::new(covariance).map_or(f64::INFINITY, |cholesky| {
                 cholesky.solve(&defect).dot(&defect)

@@ -10,8 +10,9 @@ use gyrocal_hypothesis::ModelExtension;
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_statistics::math::exp;
 
-use crate::dynamics::{Dynamics, FittedNoise};
+use crate::dynamics::Dynamics;
 use crate::error::PlantError;
+use crate::linearised::FittedNoise;
 use crate::lines::Course;
 use crate::problem::Problem;
 use crate::solve::{Iterate, Solution, Solver};

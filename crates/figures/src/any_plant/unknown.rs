@@ -32,35 +32,44 @@ struct Ended {
 pub(super) fn figures(context: &Context, plants: &[LoadedPlant]) -> Result<Vec<Figure>, Error> {
     let bare = Kind::ALL.map(without_sigmas);
     let bare = bare.into_iter().collect::<Result<Vec<_>, Error>>()?;
-    let population = in_turn("unknown states", &Kind::ALL, [UNKNOWN, 200, 2], |kind, seed| {
-        let is_wrong = seed % 2 == 1;
-        let setting = if is_wrong {
-            settings(kind, seed)[0].clone()
-        } else {
-            Setting::random(kind, seed, ROWS)
-        };
-        let (known, plant) = (&plants[kind as usize], &bare[kind as usize]);
-        let record = prepared(known, simulate(&setting, None))?;
-        let (held, _) = FittedPlant::nominal(known, record.clone(), &[])?.to_hold()?;
-        let best = FittedPlant::nominal(known, record.clone(), &held)?.deviance();
-        let mut random = Stream::new(seed, 4);
-        let mut first = vec![0.0; plant.description().states.len()];
-        let parameters = plant.description().parameters.iter();
-        first.extend(parameters.map(|own| own.value * (random.log_between(1.0 / 3.0, 3.0) - 1.0)));
-        let fit = FittedPlant::nominal_from(plant, record.clone(), &[], Some(&first));
-        let fit = fit.and_then(|fit| {
-            let (held, _) = fit.to_hold()?;
-            if held.is_empty() {
-                return Ok(fit);
-            }
-            FittedPlant::nominal_from(plant, record, &held, Some(&first))
-        });
-        Ok(Ended {
-            is_wrong,
-            is_best: fit.as_ref().is_ok_and(|fit| fit.deviance() < SAME_COST * best),
-            reason: fit.err().map(|error| error.to_string()),
-        })
-    });
+    let population = in_turn(
+        "unknown states",
+        &Kind::ALL,
+        [UNKNOWN, 200, 2],
+        |kind, seed| {
+            let is_wrong = seed % 2 == 1;
+            let setting = if is_wrong {
+                settings(kind, seed)[0].clone()
+            } else {
+                Setting::random(kind, seed, ROWS)
+            };
+            let (known, plant) = (&plants[kind as usize], &bare[kind as usize]);
+            let record = prepared(known, simulate(&setting, None))?;
+            let (held, _) = FittedPlant::nominal(known, record.clone(), &[])?.to_hold()?;
+            let best = FittedPlant::nominal(known, record.clone(), &held)?.deviance();
+            let mut random = Stream::new(seed, 4);
+            let mut first = vec![0.0; plant.description().states.len()];
+            let parameters = plant.description().parameters.iter();
+            first.extend(
+                parameters.map(|own| own.value * (random.log_between(1.0 / 3.0, 3.0) - 1.0)),
+            );
+            let fit = FittedPlant::nominal_from(plant, record.clone(), &[], Some(&first));
+            let fit = fit.and_then(|fit| {
+                let (held, _) = fit.to_hold()?;
+                if held.is_empty() {
+                    return Ok(fit);
+                }
+                FittedPlant::nominal_from(plant, record, &held, Some(&first))
+            });
+            Ok(Ended {
+                is_wrong,
+                is_best: fit
+                    .as_ref()
+                    .is_ok_and(|fit| fit.deviance() < SAME_COST * best),
+                reason: fit.err().map(|error| error.to_string()),
+            })
+        },
+    );
     let name = "any plant: nothing known of the states, parameters within a factor of 3: the best fit reached";
     let mut rows = vec![
         Row::share(name, |one: &Of<Ended>| Some(one.found.is_best)).at_least(

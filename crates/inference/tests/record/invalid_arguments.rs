@@ -20,7 +20,6 @@ fn assert_refused(case: &Case<'_>, expected: &str) {
 }
 
 #[test]
-#[expect(clippy::too_many_lines, reason = "a table of cases")]
 fn arguments_without_meaning_are_errors() {
     let mut chain = Chain::measured(0);
     let trajectory = chain.trajectory();

@@ -6,8 +6,9 @@ use std::sync::OnceLock;
 use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
 
 use super::{CONVERGED, ENOUGH, Iterate, PATIENCE, STALLED, Solution, Solver, no_fit};
-use crate::dynamics::{Dynamics, Linearised, reduce};
+use crate::dynamics::Dynamics;
 use crate::error::PlantError;
+use crate::linearised::{Linearised, reduce};
 
 /// Most steps.
 const MAX_STEPS: usize = 100;
