@@ -24,7 +24,7 @@ impl Linearised {
     }
 }
 
-/// FittedNoise of a fit.
+/// Noise of a fit.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct FittedNoise {
     /// Variances over the declared ones: outputs, then noises of rates.

@@ -119,7 +119,7 @@ impl Problem {
         pairs.map(|(state, value)| state.initial + value).collect()
     }
 
-    /// FittedNoise of these standard deviations over the declared ones: outputs, then noises.
+    /// Noise of these standard deviations over the declared ones: outputs, then noises.
     pub(crate) fn noise(&self, ratios: &[f64]) -> FittedNoise {
         FittedNoise {
             factors: ratios.iter().map(|ratio| ratio * ratio).collect(),

@@ -76,6 +76,14 @@ pub(crate) struct Solver<'a> {
     pub(crate) parameters: Vec<usize>,
 }
 
+/// Normal equations.
+struct Normal {
+    information: DMatrix<f64>,
+    /// Minus the derivative of half the cost.
+    gradient: DVector<f64>,
+    cost: f64,
+}
+
 /// A Gauss-Newton step.
 struct Step {
     change: DVector<f64>,
@@ -184,17 +192,11 @@ impl<'a> Solver<'a> {
     }
 
     fn step(&self, pass: &Pass<'_>, values: &[f64]) -> Result<Step, PlantError> {
-        let reduced = reduce(pass)?;
-        let count = values.len();
-        let mut information = reduced.gram.view((1, 1), (count, count)).into_owned();
-        let mut gradient = DVector::from_fn(count, |i, _| -reduced.gram[(0, i + 1)]);
-        let mut cost = reduced.gram[(0, 0)];
-        for (i, (sigma, value)) in self.sigmas.iter().zip(values).enumerate() {
-            let weight = sigma.powi(-2);
-            information[(i, i)] += weight;
-            gradient[i] -= weight * value;
-            cost += weight * value * value;
-        }
+        let Normal {
+            information,
+            gradient,
+            cost,
+        } = self.normal(pass, values)?;
         let cholesky = Cholesky::new(information).ok_or(PlantError::Singular)?;
         let change = cholesky.solve(&gradient);
         let smoothed = pass
@@ -210,6 +212,26 @@ impl<'a> Solver<'a> {
                 .map(|most| PENALTY * most)
                 .collect(),
             change,
+        })
+    }
+
+    /// The normal equations of the unknowns at some values, their priors with them.
+    fn normal(&self, pass: &Pass<'_>, values: &[f64]) -> Result<Normal, PlantError> {
+        let gram = reduce(pass)?.gram;
+        let count = values.len();
+        let mut information = gram.view((1, 1), (count, count)).into_owned();
+        let mut gradient = DVector::from_fn(count, |i, _| -gram[(0, i + 1)]);
+        let mut cost = gram[(0, 0)];
+        for (i, (sigma, value)) in self.sigmas.iter().zip(values).enumerate() {
+            let weight = sigma.powi(-2);
+            information[(i, i)] += weight;
+            gradient[i] -= weight * value;
+            cost += weight * value * value;
+        }
+        Ok(Normal {
+            information,
+            gradient,
+            cost,
         })
     }
 

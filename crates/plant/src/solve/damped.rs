@@ -5,10 +5,10 @@ use std::sync::OnceLock;
 
 use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
 
-use super::{CONVERGED, ENOUGH, Iterate, PATIENCE, STALLED, Solution, Solver, no_fit};
+use super::{CONVERGED, ENOUGH, Iterate, Normal, PATIENCE, STALLED, Solution, Solver, no_fit};
 use crate::dynamics::Dynamics;
 use crate::error::PlantError;
-use crate::linearised::{Linearised, reduce};
+use crate::linearised::Linearised;
 
 /// Most steps.
 const MAX_STEPS: usize = 100;
@@ -35,9 +35,7 @@ const ROUNDING: f64 = 1e-12;
 struct At {
     iterate: Iterate,
     lin: Linearised,
-    information: DMatrix<f64>,
-    gradient: DVector<f64>,
-    cost: f64,
+    normal: Normal,
 }
 
 impl Solver<'_> {
@@ -52,26 +50,28 @@ impl Solver<'_> {
         let mut at = self.simulated(&mut dynamics, values)?;
         let mut damping = FIRST;
         for index in 0..MAX_STEPS {
-            let promised = 0.5 * solved(&at.information, &at.gradient).dot(&at.gradient);
+            let promised =
+                0.5 * solved(&at.normal.information, &at.normal.gradient).dot(&at.normal.gradient);
             let enough = if index < PATIENCE { CONVERGED } else { ENOUGH };
-            if promised < enough.max(ROUNDING * at.cost) {
+            if promised < enough.max(ROUNDING * at.normal.cost) {
                 return Ok(self.found(at));
             }
-            let weights = weights(&at.information);
+            let weights = weights(&at.normal.information);
             let next = loop {
                 if damping > MOST {
                     break None;
                 }
-                let mut damped = at.information.clone();
+                let mut damped = at.normal.information.clone();
                 for (i, weight) in weights.iter().enumerate() {
                     damped[(i, i)] += damping * weight;
                 }
-                let step = Cholesky::new(damped).map(|cholesky| cholesky.solve(&at.gradient));
+                let step =
+                    Cholesky::new(damped).map(|cholesky| cholesky.solve(&at.normal.gradient));
                 let moved = step.and_then(|step| {
                     let values = self.moved(&at.iterate.values, &step);
                     self.simulated(&mut dynamics, &values).ok()
                 });
-                if let Some(moved) = moved.filter(|moved| moved.cost < at.cost) {
+                if let Some(moved) = moved.filter(|moved| moved.normal.cost < at.normal.cost) {
                     damping *= LESS;
                     break Some(moved);
                 }
@@ -115,34 +115,22 @@ impl Solver<'_> {
             return Err(PlantError::NotFinite { row });
         }
         let lin = dynamics.linearise(&course, &points)?;
-        let reduced = reduce(&lin.pass(&self.noise, &self.lines))?;
-        let count = values.len();
-        let mut information = reduced.gram.view((1, 1), (count, count)).into_owned();
-        let mut gradient = DVector::from_fn(count, |i, _| -reduced.gram[(0, i + 1)]);
-        let mut cost = reduced.gram[(0, 0)];
-        for (i, (sigma, value)) in self.sigmas.iter().zip(values).enumerate() {
-            let weight = sigma.powi(-2);
-            information[(i, i)] += weight;
-            gradient[i] -= weight * value;
-            cost += weight * value * value;
-        }
+        let normal = self.normal(&lin.pass(&self.noise, &self.lines), values)?;
         Ok(At {
             iterate: Iterate {
                 points,
                 values: values.to_vec(),
             },
             lin,
-            information,
-            gradient,
-            cost,
+            normal,
         })
     }
 
     fn found(&self, at: At) -> Solution {
-        let change = solved(&at.information, &at.gradient);
+        let change = solved(&at.normal.information, &at.normal.gradient);
         Solution {
-            covariance: inverse(&at.information),
-            cost: at.cost - change.dot(&at.gradient),
+            covariance: inverse(&at.normal.information),
+            cost: at.normal.cost - change.dot(&at.normal.gradient),
             lin: at.lin,
             whole: OnceLock::new(),
             is_damped: true,
