@@ -7,7 +7,9 @@
 use gyrocal::estimation::Manifold;
 use gyrocal::trajectory::Orientation;
 use gyrocal::{Chart, Integration};
-use gyrocal_inference::{Column, ExtraColumns, Pass, Series, Trajectory, Walk, Walks};
+use gyrocal_inference::{
+    Column, ExtraColumns, FurtherNoise, Pass, Series, Trajectory, Walk, Walks,
+};
 
 use crate::error::CalibrationError;
 use crate::run::{Conditions, WeightedRows};
@@ -253,7 +255,10 @@ where
         work::carry(columns.len());
         let trajectory = self.trajectory(index, parameters, &wanted, further);
         let result = pass(&Pass {
-            walks: trajectory.walks,
+            further: FurtherNoise {
+                walks: trajectory.walks,
+                ..FurtherNoise::default()
+            },
             rows,
             ..Pass::new(&trajectory, &columns)
         });

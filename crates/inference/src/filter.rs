@@ -199,6 +199,7 @@ mod tests {
             deviation: vec![0.0; 2],
             covariance,
             cost: 0.0,
+            noises: Vec::new(),
         };
         let mut filter = Filter::new(0, &start, true);
         let jacobian: [f64; 2] = core::array::from_fn(|i| v[i] + angle * u[i]);

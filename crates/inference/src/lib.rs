@@ -20,7 +20,8 @@
 //! Kalman smoother (Bell, SIAM J. Optim. 4(3), 1994). [`Pass::jumps`] has the score of a sudden change of
 //! the states in every step, [`Pass::noise_score`] the likelihood of the noise with its exact derivatives.
 //!
-//! A parameter may walk at random along the record ([`Walk`]): it is then one more state.
+//! A parameter may walk at random along the record ([`Walk`]), and noise of an output may be correlated
+//! ([`Correlated`]): each is then one more state. States may have process noise ([`Process`]).
 //!
 //! # What it does not do
 //!
@@ -31,6 +32,7 @@
     reason = "loops over several matrices by one index read like the equations"
 )]
 
+mod augmented;
 mod column;
 mod error;
 mod filter;
@@ -45,8 +47,8 @@ mod small;
 mod smooth;
 mod step;
 mod trajectory;
-mod walks;
 
+pub use augmented::{Correlated, FurtherNoise, Process, Walk, Walks};
 pub use column::{Column, ExtraColumns};
 pub use error::Singular;
 pub use gram::Gram;
@@ -58,4 +60,3 @@ pub use restricted::{Asked, Restricted, RestrictedAt, UnknownNoise};
 pub use series::Series;
 pub use smooth::Smoothed;
 pub use trajectory::Trajectory;
-pub use walks::{Walk, Walks};

@@ -8,7 +8,7 @@ use crate::pass::{Made, Pass, Taken, Watch};
 use crate::small::{add_triangle, apply, dot, product, sandwich};
 
 /// Likelihood of the noise at one point, and its derivatives by the natural logarithms of the noise
-/// variances: those of the outputs, those of the noises, those of the random walks.
+/// variances: those of the outputs, those of the noises, those of further noises.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NoiseScore {
     /// Number of output values used.
@@ -231,6 +231,13 @@ impl NoiseFilter {
 }
 
 impl Watch for NoiseFilter {
+    fn begin(&mut self, state: usize, noise: usize, variance: f64) {
+        let derivative = (self.outputs + noise).checked_sub(self.first);
+        if let Some(own) = derivative.and_then(|index| self.each.get_mut(index)) {
+            own.covariance[state * self.states + state] += variance;
+        }
+    }
+
     fn step(&mut self, made: &Made<'_>) -> Result<(), EstimationError> {
         match self.states {
             _ if self.each.is_empty() => {}

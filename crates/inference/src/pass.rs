@@ -8,12 +8,12 @@ use gyrocal_estimation::EstimationError;
 use gyrocal_scalar::Scalar;
 use nalgebra::DMatrix;
 
+use crate::augmented::{Augmented, FurtherNoise};
 use crate::column::Column;
 use crate::filter::Filter;
 use crate::gram::Gram;
 use crate::record::{KeptRecord, LinearisedRecord};
 use crate::small::squared;
-use crate::walks::{Walks, WithWalks};
 use running::Running;
 
 const NOT_DRIVEN: EstimationError = EstimationError::InvalidArgument {
@@ -27,10 +27,10 @@ pub struct Pass<'a> {
     pub record: &'a dyn LinearisedRecord,
     /// The columns.
     pub columns: &'a [Column],
-    /// Parameters that walk at random about their values.
-    pub walks: Walks<'a>,
-    /// Factors of the declared variances: of the outputs, of the noises, of the walks. All are one if there
-    /// are none.
+    /// Noise beyond that of the record.
+    pub further: FurtherNoise<'a>,
+    /// Factors of the declared variances: of the outputs, of the noises, of the further noises. All are one if
+    /// there are none.
     pub factors: &'a [f64],
     /// Further variance of each state in each step, while a fit is on its way; none if there are none.
     pub loose: &'a [f64],
@@ -45,7 +45,7 @@ impl core::fmt::Debug for Pass<'_> {
         f.debug_struct("Pass")
             .field("rows", &self.record.rows())
             .field("columns", &self.columns.len())
-            .field("walks", &self.walks.walks.len())
+            .field("further", &self.further)
             .finish_non_exhaustive()
     }
 }
@@ -66,10 +66,10 @@ pub struct Reduced {
     /// points, and of the first point's distance from its prior, each over its covariance. NaN where it was
     /// not asked for.
     pub trajectory_cost: f64,
-    /// Deviation of the last point and then of the walks there, each with its derivatives by columns:
+    /// Deviation of the last point and then of the further states there, each with its derivatives by columns:
     /// rows of 1 + columns.
     pub last: Vec<f64>,
-    /// Covariance of the last point and of the walks there given the parameters, by rows.
+    /// Covariance of the last point and of the further states there given the parameters, by rows.
     pub last_covariance: Vec<f64>,
 }
 
@@ -110,6 +110,9 @@ pub(crate) struct Made<'a> {
 
 /// Sees what a pass does. It is called through a pointer, so that a pass is compiled once.
 pub(crate) trait Watch {
+    /// Before the first row: the variance of a state that goes with a noise, at the present size of that.
+    fn begin(&mut self, _state: usize, _noise: usize, _variance: f64) {}
+
     /// Before the outputs of a row.
     fn at(&mut self, _row: usize, _filter: &Filter) {}
 
@@ -127,7 +130,7 @@ impl<'a> Pass<'a> {
         Self {
             record,
             columns,
-            walks: Walks::default(),
+            further: FurtherNoise::default(),
             factors: &[],
             loose: &[],
             left_out: &(0..0),
@@ -202,10 +205,10 @@ impl<'a> Pass<'a> {
         self.rows.min(self.record.rows())
     }
 
-    /// Numbers of states and of noises, those of walks with them.
+    /// Numbers of states and of noises, further ones with them.
     pub(crate) fn sizes(&self) -> (usize, usize) {
-        let (own, walks) = (self.record.layout(), self.walks.walks.len());
-        (own.states + walks, own.noises + walks)
+        let (own, (states, noises)) = (self.record.layout(), self.further.sizes());
+        (own.states + states, own.noises + noises)
     }
 
     /// Makes the pass; with a `change` of the columns all are folded into the mean.
@@ -214,15 +217,15 @@ impl<'a> Pass<'a> {
         change: Option<&[f64]>,
         watch: &mut dyn Watch,
     ) -> Result<Filter, EstimationError> {
-        let with_walks;
-        let record: &dyn LinearisedRecord = if self.walks.walks.is_empty() {
+        let augmented;
+        let record: &dyn LinearisedRecord = if self.further.sizes() == (0, 0) {
             self.record
         } else {
-            with_walks = WithWalks::new(self.record, self.walks)?;
-            &with_walks
+            augmented = Augmented::new(self.record, self.further)?;
+            &augmented
         };
         let rows = self.count();
-        let mut running = Running::new(self, record, change)?;
+        let mut running = Running::new(self, record, change, watch)?;
         record.visit(rows, &mut |block| running.block(block, rows, watch))?;
         Ok(running.filter)
     }

@@ -42,6 +42,9 @@ pub struct Start {
     pub covariance: Vec<f64>,
     /// Its squared distance from the mean over that covariance.
     pub cost: f64,
+    /// States whose first values have variances of their own that go with a noise: state, noise, variance at the
+    /// declared size of the noise.
+    pub noises: Vec<(usize, usize, f64)>,
 }
 
 impl Start {
@@ -52,6 +55,7 @@ impl Start {
             deviation: vec![0.0; states],
             covariance: vec![0.0; states * states],
             cost: 0.0,
+            noises: Vec::new(),
         }
     }
 }

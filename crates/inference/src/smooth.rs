@@ -67,7 +67,8 @@ impl Pass<'_> {
         let own = self.record.layout().states;
         let rows = self.count();
         let mut corrections = vec![0.0; rows * own];
-        let mut walks = vec![0.0; rows * (n - own)];
+        let count = self.further.walks.walks.len();
+        let mut walks = vec![0.0; rows * count];
         let mut multipliers = vec![0.0; own];
         let (mut adjoint, mut pulled) = (vec![0.0; n], vec![0.0; n]);
         for row in (0..rows).rev() {
@@ -89,7 +90,7 @@ impl Pass<'_> {
                 *sum += mean;
             }
             corrections[row * own..(row + 1) * own].copy_from_slice(&pulled[..own]);
-            walks[row * (n - own)..(row + 1) * (n - own)].copy_from_slice(&pulled[own..]);
+            walks[row * count..(row + 1) * count].copy_from_slice(&pulled[own..own + count]);
             if row > 0 {
                 for (most, own) in multipliers.iter_mut().zip(&adjoint) {
                     *most = f64::max(*most, own.abs());

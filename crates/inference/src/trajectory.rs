@@ -4,12 +4,12 @@ use core::ops::Range;
 
 use gyrocal_estimation::{EstimationError, Integration, Manifold};
 
+use crate::augmented::Walks;
 use crate::column::{Column, ExtraColumns};
 use crate::record::{Layout, LinearisedRecord, LinearisedRows, Start};
 use crate::series::Series;
 use crate::small::squared;
 use crate::step::{Stepper, map_columns, sandwich};
-use crate::walks::Walks;
 
 /// Rows that are linearised before they are handed over.
 const BLOCK: usize = 256;
@@ -287,6 +287,7 @@ where
             deviation: mean.to_vec(),
             covariance: covariance.as_flattened().to_vec(),
             cost,
+            noises: Vec::new(),
         })
     }
 

@@ -9,6 +9,8 @@
 
 #[path = "record/chain.rs"]
 mod chain;
+#[path = "record/coloured.rs"]
+mod coloured;
 #[expect(dead_code, reason = "some constants are those of other tests")]
 #[path = "../../estimation/tests/common/mod.rs"]
 mod common;

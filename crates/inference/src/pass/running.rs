@@ -42,8 +42,9 @@ impl<'a> Running<'a> {
         pass: &'a Pass<'a>,
         record: &dyn LinearisedRecord,
         change: Option<&'a [f64]>,
+        watch: &mut dyn Watch,
     ) -> Result<Self, EstimationError> {
-        let start = record.start()?;
+        let mut start = record.start()?;
         let layout = record.layout();
         let count = pass.columns.len();
         let factors = layout.outputs + layout.noises;
@@ -53,7 +54,7 @@ impl<'a> Running<'a> {
             || change.is_some_and(|change| change.len() != count)
         {
             return Err(EstimationError::InvalidArgument {
-                expected: "rows, one factor for each output, each noise and each walk, and one change a column",
+                expected: "rows, one factor for each output and each noise, and one change a column",
             });
         }
         let places = pass.columns.iter().map(|column| place(column, &layout));
@@ -64,6 +65,12 @@ impl<'a> Running<'a> {
                     expected: "columns of parameters, states and outputs of the record",
                 })?;
         let is_driven = layout.noises > 0 || !pass.loose.is_empty();
+        for (state, noise, declared) in core::mem::take(&mut start.noises) {
+            let factor = pass.factors.get(layout.outputs + noise);
+            let variance = declared * factor.copied().unwrap_or(1.0);
+            start.covariance[state * layout.states + state] += variance;
+            watch.begin(state, noise, variance);
+        }
         let folded = if change.is_some() { 0 } else { count };
         let mut filter = Filter::new(folded, &start, is_driven);
         for (index, column) in pass.columns.iter().enumerate() {

@@ -3,7 +3,8 @@
 use chacha20::ChaCha12Rng;
 use gyrocal_estimation::{EstimationError, Integration, Manifold};
 use gyrocal_inference::{
-    Column, ExtraColumns, NoiseScore, Pass, Reduced, Series, Smoothed, Trajectory, Walks,
+    Column, ExtraColumns, FurtherNoise, NoiseScore, Pass, Reduced, Series, Smoothed, Trajectory,
+    Walks,
 };
 use gyrocal_scalar::Model;
 use nalgebra::{Cholesky, DMatrix, DVector, Matrix2, Vector2};
@@ -253,7 +254,10 @@ impl<'a> Case<'a> {
 
     pub(crate) fn pass(&self) -> Pass<'_> {
         Pass {
-            walks: self.trajectory.walks,
+            further: FurtherNoise {
+                walks: self.trajectory.walks,
+                ..FurtherNoise::default()
+            },
             ..Pass::new(&self.trajectory, &self.columns)
         }
     }

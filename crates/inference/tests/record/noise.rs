@@ -98,7 +98,7 @@ fn add(sums: &mut [f64; 2], value: f64) {
 }
 
 /// Box and Muller.
-fn normal(rng: &mut ChaCha12Rng) -> f64 {
+pub(crate) fn normal(rng: &mut ChaCha12Rng) -> f64 {
     let [a, b]: [f64; 2] = [rng.random(), rng.random()];
     (-2.0 * (1.0 - a).ln()).sqrt() * (core::f64::consts::TAU * b).cos()
 }

@@ -2,7 +2,7 @@
 
 use gyrocal_hypothesis::RateNoiseFit;
 use gyrocal_inference::{
-    Asked, NoiseScore, Pass, Restricted, RestrictedAt, UnknownNoise, Walk, Walks,
+    Asked, FurtherNoise, NoiseScore, Pass, Restricted, RestrictedAt, UnknownNoise, Walk, Walks,
 };
 use nalgebra::{Cholesky, DMatrix, DVector};
 
@@ -214,9 +214,12 @@ impl Likelihood<'_, '_> {
                 .with_first_rows(run, &parameters, count, |linearised| {
                     work::differentiate((2 * AXES + self.walks.len()).saturating_sub(first));
                     Pass {
-                        walks: Walks {
-                            walks: &self.walks,
-                            changes,
+                        further: FurtherNoise {
+                            walks: Walks {
+                                walks: &self.walks,
+                                changes,
+                            },
+                            ..FurtherNoise::default()
                         },
                         factors: &factors,
                         ..linearised.on(self.fitted.kept(run))
