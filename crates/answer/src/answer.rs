@@ -7,7 +7,7 @@ use crate::{
     AllanTest, Coefficients, Estimated, FilterTest, Finding, FindingKind, Gain, MagnitudeTest,
     ModelNoise, NextRun, NoiseAuditSummary, NoiseLevel, NotTested, NotTestedReason, NullDirection,
     OutputError, Power, RankedEffect, RecordSummary, ResidualTest, ResidualVerdict, Residuals,
-    SetUps, Starts,
+    SetUps, Starts, UndeclaredNoise,
 };
 
 /// Version of the JSON contract of a diagnosis; it rises when a key changes its meaning or goes
@@ -76,6 +76,9 @@ pub struct Answer {
     pub power: Vec<Power>,
     /// Maximum-likelihood noise over the declared noise, with all causes in the model; none without a fit.
     pub noise: Vec<NoiseLevel>,
+    /// Noise that a plant does not declare, with all findings in the model; none of a platform.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub undeclared_noise: Vec<UndeclaredNoise>,
     /// Noise of the model that the coefficients are of; `None` without a fit, and of a plant.
     pub model_noise: Option<ModelNoise>,
     /// Noise audit of the accelerometers; `None` without a fit.

@@ -65,6 +65,37 @@ pub struct Estimated {
     pub sigma: f64,
 }
 
+/// Noise that a plant does not declare, and that its record has.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct UndeclaredNoise {
+    /// The output whose readings have it, or the rate.
+    pub channel: String,
+    /// What it is.
+    pub kind: NoiseKind,
+    /// Standard deviation, in `unit`.
+    pub sigma: f64,
+    /// Of readings their unit; of a rate that of its state over the root of a second.
+    pub unit: String,
+    /// Correlation time \[s\]; `None` of process noise.
+    pub time_s: Option<f64>,
+    /// What it adds to the log-likelihood beside the others \[nats\].
+    pub gain_nats: f64,
+    /// Noises that explain as much in its place, by their channels.
+    pub instead: Vec<String>,
+}
+
+/// Kind of a noise beside white noise of readings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum NoiseKind {
+    /// Noise of readings that is correlated as e^(-t/τ).
+    Correlated,
+    /// White noise of a rate.
+    Process,
+}
+
 /// An estimated noise.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]

@@ -53,7 +53,10 @@ mod written;
 
 pub use allan::{AllanCourse, AllanPoint, AllanTest};
 pub use answer::{Answer, FalseAlarmShares, RecordResult, SCHEMA_VERSION, Subject, Verdict};
-pub use audit::{Estimated, Gaps, ModelNoise, NoiseAuditSummary, NoiseLevel, RecordSummary};
+pub use audit::{
+    Estimated, Gaps, ModelNoise, NoiseAuditSummary, NoiseKind, NoiseLevel, RecordSummary,
+    UndeclaredNoise,
+};
 pub use coefficients::{CoefficientEstimate, CoefficientInterval, Coefficients, SetMember};
 pub use filter::FilterTest;
 pub use finding::{

@@ -1,5 +1,6 @@
 //! Diagnosis of any plant: five simulated plants with hidden effects.
 
+mod coloured;
 mod effort;
 mod gauges;
 pub(crate) mod hidden;
@@ -44,6 +45,7 @@ pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
     figures.push(gauges::figure(&plants)?);
     figures.extend(starts(context, &plants)?);
     figures.extend(unknown::figures(context, &plants)?);
+    figures.extend(coloured::figures(context, &plants)?);
     figures.push(effort::lines()?);
     figures.push(effort::duration()?.timed(context.is_small()));
     figures.push(effort::interpreted(&plants[Kind::Duffing as usize])?);

@@ -43,6 +43,13 @@ impl Default for SearchOptions {
 /// Largest number of effects in one record: more mean that the catalogue lacks the true one.
 pub(crate) const MOST_EFFECTS: usize = 6;
 
+/// An effect that another search of the same record has found, to be tried before others.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Proposed {
+    pub(crate) hypothesis: usize,
+    pub(crate) shape: Option<f64>,
+}
+
 /// Data and hypotheses of one search.
 pub(crate) struct SearchContext<'t> {
     pub(crate) plant: &'static Plant,
@@ -54,6 +61,8 @@ pub(crate) struct SearchContext<'t> {
     pub(crate) rows: Rows,
     pub(crate) options: &'t SearchOptions,
     pub(crate) budget: Rc<Budget>,
+    /// Effects that are tried before others.
+    pub(crate) proposed: Vec<Proposed>,
 }
 
 impl<'t> SearchContext<'t> {
@@ -76,6 +85,7 @@ impl<'t> SearchContext<'t> {
             rows,
             options,
             budget: Rc::new(Budget::unlimited()),
+            proposed: Vec::new(),
         }
     }
 
@@ -91,6 +101,7 @@ impl<'t> SearchContext<'t> {
             rows: self.rows.clone(),
             options: self.options,
             budget: Rc::clone(&self.budget),
+            proposed: Vec::new(),
         }
     }
 

@@ -115,6 +115,7 @@ pub(crate) fn forward<F: FittedModel>(
 ) -> Result<Selected<F>, F::Error> {
     let mut first: Option<FirstRound> = None;
     let mut gains = Vec::new();
+    let mut proposed = context.proposed.iter();
     let (margin, most) = match beside {
         Beside::WhiteNoise { most, .. } => (None, most),
         Beside::Walks { margin } => (Some(margin), MOST_EFFECTS),
@@ -136,6 +137,15 @@ pub(crate) fn forward<F: FittedModel>(
         });
         if context.budget.ends_selection(state.stage.fitted.work()) {
             return Ok(Selected::new(state, first, Ended::Complete));
+        }
+        if state.accepted.len() < most
+            && let Some(next) = proposed.next()
+        {
+            let candidate = scores.best[next.hypothesis].map(|best| (best, next.shape));
+            let tried = candidate
+                .map(|own| try_effect(context, &mut state, own, (&null, threshold), beside));
+            gains.extend(tried.and_then(Outcome::gained));
+            continue;
         }
         let share = if margin.is_some() {
             WORTH_FITTING_BESIDE_WALKS
@@ -208,6 +218,15 @@ enum Outcome {
     /// It is in the model; twice the log-likelihood that it gained.
     Gained(f64),
     NotDetected,
+}
+
+impl Outcome {
+    fn gained(self) -> Option<f64> {
+        match self {
+            Self::Gained(gained) => Some(gained),
+            Self::Inseparable | Self::NotDetected => None,
+        }
+    }
 }
 
 /// Whether the selection ends for walks that are better than its effects.

@@ -143,7 +143,7 @@ mod walk_findings;
 mod walks;
 
 pub use bank::{JointScore, NominalEstimate, ScoreBank};
-pub use context::SearchOptions;
+pub use context::{Proposed, SearchOptions};
 pub use continuation::{Phase, RecordOffset, continued, continued_shapes, recurs};
 pub use finding::{
     Alternative, CONFIDENCE_SET_DEVIANCE, EffectEstimate, ExactEquivalent, Finding, NoneOfThese,
@@ -160,6 +160,6 @@ pub use rate_noise::{RateNoise, RateNoiseFit};
 pub use rows::{Covariate, Rows};
 pub use score::{NESTED_MODEL_CHI2, Ranked};
 pub use score_table::{ScoreTable, ScoredEffect};
-pub use search::{Searched, search, select};
+pub use search::{Searched, search, search_from, select};
 pub use signature::{Source, scale, shape_derivative, signature};
 pub use walk_candidates::{BESIDE_WALKS, WALK_SET_DEVIANCE};

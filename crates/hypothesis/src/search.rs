@@ -3,7 +3,7 @@
 use gyrocal_scalar::effect::Effect;
 
 use crate::accepted::{Accepted, value_places};
-use crate::context::{MOST_EFFECTS, SearchContext, SearchOptions, extension};
+use crate::context::{MOST_EFFECTS, Proposed, SearchContext, SearchOptions, extension};
 use crate::finding::Finding;
 use crate::fitted_stage::FittedStage;
 use crate::forward::{Beside, Ended, FirstRound, Selected, Walking, forward, open_hypotheses};
@@ -69,6 +69,19 @@ impl<F: FittedModel> Searched<F> {
 }
 
 impl<F> Searched<F> {
+    /// What was found but random walks and unmodelled terms, for a search of the same record and selection in other
+    /// noise.
+    #[must_use]
+    pub fn proposals(&self) -> Vec<Proposed> {
+        let accepted = self.accepted.iter();
+        accepted
+            .map(|own| Proposed {
+                hypothesis: own.hypothesis,
+                shape: own.shape,
+            })
+            .collect()
+    }
+
     /// The extension with all unmodelled terms and those findings that are `kept`; random walks are
     /// noise and no part of it.
     #[must_use]
@@ -93,8 +106,26 @@ pub fn search<F: FittedModel>(
     selection: &Selection,
     options: &SearchOptions,
 ) -> Result<Searched<F>, F::Error> {
+    search_from(nominal, rows, selection, options, Vec::new())
+}
+
+/// The same, in which the effects of another search of this record and selection are tried first, in their order.
+/// Each must be detected beside those before it as any other.
+///
+/// # Errors
+/// As [`search`].
+pub fn search_from<F: FittedModel>(
+    nominal: F,
+    rows: Rows,
+    selection: &Selection,
+    options: &SearchOptions,
+    proposed: Vec<Proposed>,
+) -> Result<Searched<F>, F::Error> {
     let plant = nominal.plant();
-    let context = SearchContext::new(&nominal, rows, selection, options);
+    let context = SearchContext {
+        proposed,
+        ..SearchContext::new(&nominal, rows, selection, options)
+    };
     let mut draws = GaussianDraws::new(options.seed);
     let (fitted, noise) = with_noise(nominal)?;
     let before = fitted.work();

@@ -81,6 +81,7 @@ pub(crate) fn answer(
         threshold: (!searched.ranking.is_empty()).then_some(searched.threshold),
         power: Vec::new(),
         noise: noise(plant, searched),
+        undeclared_noise: fitted.undeclared_noise()?,
         model_noise: None,
         noise_audit: None,
         allan: None,
@@ -283,7 +284,7 @@ fn noise(plant: &LoadedPlant, searched: &Searched<FittedPlant>) -> Vec<NoiseLeve
 
 /// What the extended model leaves: Ljung and Box's test of the innovations of each output, and terms outside of
 /// the catalogue.
-fn remainder(
+pub(crate) fn remainder(
     plant: &LoadedPlant,
     searched: &Searched<FittedPlant>,
 ) -> Result<ResidualTest, PlantError> {

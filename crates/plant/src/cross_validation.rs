@@ -10,6 +10,7 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 
 use crate::error::PlantError;
 use crate::fitted::FittedPlant;
+use crate::fitted_noise::FittedNoise;
 use crate::linearised::reduce;
 use crate::prediction::least_prior;
 
@@ -28,8 +29,8 @@ pub(crate) fn cross_validated(
         return Ok(None);
     }
     let extended = &searched.fitted;
-    let before = searched.nominal.part_scores(&extended.ratios)?;
-    let after = extended.part_scores(&extended.ratios)?;
+    let before = searched.nominal.part_scores(&extended.noise)?;
+    let after = extended.part_scores(&extended.noise)?;
     let pairs = before.into_iter().zip(after);
     let blocks: Vec<Option<f64>> = pairs
         .map(|(before, after)| Some(after? - before?))
@@ -48,13 +49,13 @@ pub(crate) fn cross_validated(
 
 impl FittedPlant {
     /// Logarithm of the density of each part given the others, nats; `None` of a part without which the others do
-    /// not determine all unknowns. Noise has these standard deviations over the declared ones.
-    fn part_scores(&self, ratios: &[f64]) -> Result<Vec<Option<f64>>, PlantError> {
-        let whole = self.log_evidence(0..0, ratios)?;
+    /// not determine all unknowns. Noise is as given.
+    fn part_scores(&self, noise: &FittedNoise) -> Result<Vec<Option<f64>>, PlantError> {
+        let whole = self.log_evidence(0..0, noise)?;
         let parts = self.parts().into_iter();
         parts
             .map(|rows| {
-                let others = self.log_evidence(rows, ratios)?;
+                let others = self.log_evidence(rows, noise)?;
                 Ok(whole.zip(others).map(|(whole, others)| whole - others))
             })
             .collect()
@@ -74,13 +75,12 @@ impl FittedPlant {
     fn log_evidence(
         &self,
         without: Range<usize>,
-        ratios: &[f64],
+        noise: &FittedNoise,
     ) -> Result<Option<f64>, PlantError> {
         let lines = self.lines();
-        let noise = self.problem.noise(ratios);
         let reduced = reduce(&Pass {
             left_out: &without,
-            ..self.linearised(&lines)?.pass(&noise, &lines)
+            ..self.linearised(&lines)?.pass(noise, &lines)
         })?;
         Ok(self.integrated(&reduced))
     }

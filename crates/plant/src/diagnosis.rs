@@ -2,14 +2,15 @@
 
 use std::sync::Arc;
 
-use gyrocal_answer::Validation;
-use gyrocal_hypothesis::{SearchOptions, Searched, search};
+use gyrocal_answer::{ResidualVerdict, Validation};
+use gyrocal_hypothesis::{SearchOptions, Searched};
 
-use crate::answer::{answer, summary};
+use crate::answer::{answer, remainder, summary};
 use crate::cross_validation::cross_validated;
 use crate::diagnosed::Diagnosed;
 use crate::error::PlantError;
 use crate::fitted::FittedPlant;
+use crate::judged::searched;
 use crate::loaded::LoadedPlant;
 use crate::prediction::{errors, horizon_s};
 use crate::record::PlantRecord;
@@ -44,8 +45,9 @@ pub(crate) fn diagnose_from(
         FittedPlant::nominal_from(plant, first.record().clone(), &held, start)?
     };
     let selection = nominal.selection()?;
-    let rows = nominal.rows();
-    let searched = search(nominal, rows, &selection, options)?;
+    let searched = searched(nominal, &selection, options, |found| {
+        Ok(remainder(plant, found)?.verdict != ResidualVerdict::Unexplained)
+    })?;
     let mut answer = answer(plant, &searched, &selection, options)?;
     answer.undetermined = directions;
     answer.gain = cross_validated(&searched)?;

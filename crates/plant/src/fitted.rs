@@ -10,10 +10,12 @@ use nalgebra::DMatrix;
 
 use crate::dynamics::Dynamics;
 use crate::error::PlantError;
+use crate::fitted_noise::FittedNoise;
 use crate::later_starts::eliminated;
 use crate::linearised::{Linearised, reduce};
 use crate::lines::of_search;
 use crate::loaded::LoadedPlant;
+use crate::noise::NoiseProblem;
 use crate::problem::Problem;
 use crate::record::PlantRecord;
 use crate::solve::{Iterate, Solution, Solver};
@@ -31,8 +33,7 @@ const HELD: f64 = 1e-6;
 pub struct FittedPlant {
     pub(crate) problem: Arc<Problem>,
     extension: ModelExtension,
-    /// Standard deviations of the noise over the declared ones: outputs, then noises of rates.
-    pub(crate) ratios: Vec<f64>,
+    pub(crate) noise: FittedNoise,
     pub(crate) solution: Arc<Solution>,
     /// Covariance of what the search knows: all unknowns but the initial states of later records.
     covariance: DMatrix<f64>,
@@ -79,17 +80,17 @@ impl FittedPlant {
             problem.prior_sigma[states + index] = HELD * size;
         }
         problem.substeps = starts::substeps(&problem, &vec![0.0; problem.nominal()]);
-        let ratios = vec![1.0; problem.noises()];
-        let (solution, starts) = starts::best(&problem, &ratios, first)?;
+        let noise = problem.declared_noise();
+        let (solution, starts) = starts::best(&problem, &noise, first)?;
         let problem = Arc::new(problem);
         let extension = ModelExtension::default();
-        Ok(Self::of(problem, extension, ratios, solution, starts))
+        Ok(Self::of(problem, extension, noise, solution, starts))
     }
 
     fn of(
         problem: Arc<Problem>,
         extension: ModelExtension,
-        ratios: Vec<f64>,
+        noise: FittedNoise,
         solution: Solution,
         starts: Starts,
     ) -> Self {
@@ -101,7 +102,7 @@ impl FittedPlant {
                 .into_owned(),
             problem,
             extension,
-            ratios,
+            noise,
             solution: Arc::new(solution),
             starts,
         }
@@ -127,8 +128,8 @@ impl FittedPlant {
 
     /// Standard deviations of the noise over the declared ones: outputs, then noises of rates.
     #[must_use]
-    pub fn noise_ratios(&self) -> &[f64] {
-        &self.ratios
+    pub fn noise_ratios(&self) -> Vec<f64> {
+        self.noise.ratios()
     }
 
     /// Twice the cost of the fit: squares of residuals, noises and distances from priors over their
@@ -158,10 +159,9 @@ impl FittedPlant {
     /// # Errors
     /// [`PlantError::Singular`].
     pub fn whitened(&self) -> Result<Vec<(usize, usize, f64)>, PlantError> {
-        let noise = self.problem.noise(&self.ratios);
         let mut whitened = Vec::new();
         self.linearised(&[])?
-            .pass(&noise, &[])
+            .pass(&self.noise, &[])
             .reduce(|seen| whitened.push((seen.row, seen.output, seen.columns[0])))
             .map_err(|_| PlantError::Singular)?;
         Ok(whitened)
@@ -173,8 +173,7 @@ impl FittedPlant {
 
     /// The Gram matrix of some columns, the states eliminated.
     pub(crate) fn gram(&self, lines: &[Column]) -> Result<DMatrix<f64>, PlantError> {
-        let noise = self.problem.noise(&self.ratios);
-        Ok(reduce(&self.linearised(lines)?.pass(&noise, lines))?.gram)
+        Ok(reduce(&self.linearised(lines)?.pass(&self.noise, lines))?.gram)
     }
 
     /// The model about its fit, with derivatives by the parameters of some lines.
@@ -189,11 +188,41 @@ impl FittedPlant {
             return Ok(whole);
         }
         let problem = &*self.problem;
-        let noise = problem.noise(&self.ratios);
-        let course = Solver::new(problem, &self.extension, noise).course(&solution.at.values);
+        let course =
+            Solver::new(problem, &self.extension, self.noise.clone()).course(&solution.at.values);
         let mut dynamics = Dynamics::new(&problem.plant, &problem.record, problem.substeps);
         let whole = dynamics.linearise(&course, &solution.at.points)?;
         Ok(solution.whole.get_or_init(|| whole))
+    }
+
+    /// What the noise of this model is estimated from.
+    pub(crate) fn with_noise_problem<R>(
+        &self,
+        of: impl FnOnce(&NoiseProblem<'_>) -> Result<R, PlantError>,
+    ) -> Result<R, PlantError> {
+        self.with_noise_problem_of(&[], of)
+    }
+
+    /// The same without the unknowns at some places.
+    fn with_noise_problem_of<R>(
+        &self,
+        absent: &[usize],
+        of: impl FnOnce(&NoiseProblem<'_>) -> Result<R, PlantError>,
+    ) -> Result<R, PlantError> {
+        of(&NoiseProblem {
+            problem: &self.problem,
+            lin: &self.solution.lin,
+            lines: &self.lines(),
+            sigmas: &self.problem.sigmas(&self.extension),
+            values: &self.solution.at.values,
+            points: self.points(),
+            absent,
+        })
+    }
+
+    /// The same model in other noise.
+    pub(crate) fn in_noise(&self, noise: FittedNoise) -> Result<Self, PlantError> {
+        self.solved(&self.extension, noise, self.solution.at.clone())
     }
 
     fn further(&self, columns: &[Column]) -> Vec<Column> {
@@ -207,12 +236,12 @@ impl FittedPlant {
     fn solved(
         &self,
         extension: &ModelExtension,
-        ratios: Vec<f64>,
+        noise: FittedNoise,
         start: Iterate,
     ) -> Result<Self, PlantError> {
-        let solver = Solver::new(&self.problem, extension, self.problem.noise(&ratios));
+        let solver = Solver::new(&self.problem, extension, noise.clone());
         // A rival that steps on the trajectory do not reach keeps its score, unless the model itself needed others.
-        let mut solution = if self.solution.is_damped {
+        let mut solution = if self.solution.is_damped || !noise.is_declared() {
             solver.solve(start)?
         } else {
             solver.on_trajectory(start)?
@@ -223,7 +252,7 @@ impl FittedPlant {
         Ok(Self::of(
             problem,
             extension.clone(),
-            ratios,
+            noise,
             solution,
             starts,
         ))
@@ -288,12 +317,11 @@ impl FittedPlant {
         }
     }
 
-    /// White noise as the search knows it: entries of the rates stay one, those of outputs and of driven
-    /// rates follow.
-    fn as_rate_noise(&self, ratios: &[f64]) -> RateNoise {
+    /// Noise as the search knows it: entries of the rates stay one, the unknowns of the noise follow.
+    fn as_rate_noise(&self, noise: &FittedNoise) -> RateNoise {
         let rates = self.plant().rates.len();
         let mut white = vec![1.0; rates];
-        white.extend_from_slice(ratios);
+        white.extend(noise.unknowns());
         RateNoise {
             walk: vec![0.0; white.len()],
             white,

@@ -152,7 +152,7 @@ impl FittedPlant {
                 .collect(),
         };
         let problem = Problem::new(&here.plant, Arc::new(record), here.substeps);
-        let noise = problem.noise(&self.ratios);
+        let noise = self.noise.clone();
         let solver = Solver::new(&problem, &ModelExtension::default(), noise);
         let mut values = self.solution.at.values[..problem.nominal()].to_vec();
         for (index, state) in description.states.iter().enumerate() {

@@ -16,6 +16,8 @@
 //! initial states, parameters and effects along as columns. Without noise of the rates it is a simulation.
 //! Records that are joined have a step between them that begins with free states.
 //! Gauss-Newton steps by multiple shooting lead to the fit; noise levels maximise the restricted likelihood.
+//! What a search in white noise finds is judged beside process noise of every rate and correlated noise of every
+//! output.
 //!
 //! # Example
 //!
@@ -49,11 +51,13 @@ mod dynamics;
 mod error;
 mod extension;
 mod fitted;
+mod fitted_noise;
 mod functions;
 mod generated;
 mod identifiability;
 mod input_errors;
 mod interpreted;
+mod judged;
 mod later_starts;
 mod linearised;
 mod lines;

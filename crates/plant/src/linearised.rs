@@ -3,6 +3,7 @@
 use gyrocal_inference::{Column, LinearisedRows, Pass, Reduced};
 
 use crate::error::PlantError;
+use crate::fitted_noise::FittedNoise;
 
 /// A plant about a trajectory.
 #[derive(Clone, Debug)]
@@ -18,19 +19,11 @@ impl Linearised {
     pub(crate) fn pass<'p>(&'p self, noise: &'p FittedNoise, lines: &'p [Column]) -> Pass<'p> {
         Pass {
             factors: &noise.factors,
+            further: noise.further(),
             loose: &noise.loose,
             ..Pass::new(&self.rows, lines)
         }
     }
-}
-
-/// Noise of a fit.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct FittedNoise {
-    /// Variances over the declared ones: outputs, then noises of rates.
-    pub(crate) factors: Vec<f64>,
-    /// Further variance of each state in each step, while a fit is on its way; none else.
-    pub(crate) loose: Vec<f64>,
 }
 
 /// Eliminates the states.

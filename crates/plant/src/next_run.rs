@@ -294,7 +294,7 @@ impl FittedPlant {
             problem: &problem,
             lines: Vec::new(),
             sigmas: Vec::new(),
-            noise: problem.noise(&self.ratios),
+            noise: self.noise.clone(),
             parameters: parameters_of(&lines),
             base,
         };

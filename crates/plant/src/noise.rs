@@ -1,12 +1,16 @@
 //! Noise at the largest restricted likelihood: initial states and nominal parameters integrated out, sizes of
 //! effects at their best.
 
+mod all;
+mod needed;
+
 use gyrocal_inference::{Asked, Column, NoiseScore, Reduced, Restricted, UnknownNoise};
 use gyrocal_statistics::math::{exp, ln};
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 use crate::error::PlantError;
-use crate::linearised::{FittedNoise, Linearised, reduce};
+use crate::fitted_noise::FittedNoise;
+use crate::linearised::{Linearised, reduce};
 use crate::problem::Problem;
 
 /// Standard deviation of the logarithm of a noise over the declared one before a record.
@@ -22,12 +26,14 @@ const MAX_STEPS: usize = 20;
 /// good to a thousandth.
 const LEAST_GAIN: f64 = 5e-4;
 
+/// Least variance of a noise that the plant does not declare, over that which the record could just show.
+const ABSENT: f64 = 1e-3;
+
 /// Noise of a fit.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct NoiseFit {
-    /// Standard deviations over the declared ones: outputs, then noises of rates.
-    pub(crate) ratios: Vec<f64>,
-    /// Standard deviations of their logarithms.
+    pub(crate) noise: FittedNoise,
+    /// Standard deviations of the logarithms of the sizes of all noises.
     pub(crate) sigmas: Vec<f64>,
     pub(crate) log_likelihood: f64,
 }
@@ -39,21 +45,24 @@ pub(crate) struct NoiseProblem<'a> {
     pub(crate) lines: &'a [Column],
     pub(crate) sigmas: &'a [f64],
     pub(crate) values: &'a [f64],
+    /// States along the trajectory, by rows.
+    pub(crate) points: &'a [f64],
     /// Places of unknowns that the model shall not have.
     pub(crate) absent: &'a [usize],
 }
 
 impl NoiseProblem<'_> {
-    /// The largest likelihood, from these ratios.
-    pub(crate) fn maximise(&self, ratios: &[f64]) -> Result<NoiseFit, PlantError> {
+    /// The largest likelihood by the sizes, from these; noises in `held` stay.
+    fn sizes(&self, start: &FittedNoise, held: &[usize]) -> Result<NoiseFit, PlantError> {
         let problem = self.problem;
         let count = self.values.len();
         let nominal = problem.nominal().min(count);
         let later = count.saturating_sub(problem.later()).max(nominal);
-        let noises = (0..ratios.len()).map(|factor| UnknownNoise {
+        let (all, declared) = (start.factors.len(), start.declared());
+        let noises = (0..all).map(|factor| UnknownNoise {
             factor,
-            prior: Some((0.0, PRIOR_PRECISION)),
-            is_held: false,
+            prior: (factor < declared).then_some((0.0, PRIOR_PRECISION)),
+            is_held: held.contains(&factor),
         });
         let restricted = Restricted {
             values: self.values,
@@ -62,14 +71,17 @@ impl NoiseProblem<'_> {
             absent: self.absent,
             noises: noises.collect(),
         };
-        let start = ratios.iter().map(|ratio| 2.0 * ln(*ratio));
-        let start = DVector::from_iterator(ratios.len(), start);
-        let by_output = self.by_output()?;
+        let first = DVector::from_iterator(all, start.factors.iter().map(|factor| ln(*factor)));
+        let by_output = if start.is_declared() {
+            self.by_output()?
+        } else {
+            None
+        };
         let mut score = |asked: Asked<'_>| match &by_output {
             Some(outputs) => Ok(of_outputs(outputs, asked.logarithms)),
-            None => self.score(asked),
+            None => self.score(start, asked),
         };
-        let (logarithms, at) = restricted.maximise(start, (LEAST_GAIN, MAX_STEPS), &mut score)?;
+        let (logarithms, at) = restricted.maximise(first, (LEAST_GAIN, MAX_STEPS), &mut score)?;
         // Of white noise of one output twice the information is its degrees of freedom.
         let mut left = at.left;
         let outputs = self.lin.rows.layout.outputs;
@@ -82,16 +94,19 @@ impl NoiseProblem<'_> {
             own.unwrap_or(PRIOR_SIGMA)
         };
         Ok(NoiseFit {
-            ratios: logarithms.iter().map(|one| exp(0.5 * one)).collect(),
-            sigmas: (0..ratios.len()).map(sigma).collect(),
+            noise: FittedNoise {
+                factors: factors(logarithms.as_slice(), declared),
+                ..start.clone()
+            },
+            sigmas: (0..all).map(sigma).collect(),
             log_likelihood: at.value,
         })
     }
 
-    fn score(&self, asked: Asked<'_>) -> Result<NoiseScore, PlantError> {
+    fn score(&self, start: &FittedNoise, asked: Asked<'_>) -> Result<NoiseScore, PlantError> {
         let noise = FittedNoise {
             factors: asked.logarithms.iter().map(|one| exp(*one)).collect(),
-            loose: Vec::new(),
+            ..start.clone()
         };
         let first = if asked.with_derivatives {
             0
@@ -110,7 +125,7 @@ impl NoiseProblem<'_> {
             return Ok(None);
         }
         let outputs = self.lin.rows.layout.outputs;
-        let noise = self.problem.noise(&vec![1.0; outputs]);
+        let noise = self.problem.declared_noise();
         let all = (0..outputs).map(|output| {
             let mut only = self.lin.clone();
             for (place, residual) in only.rows.residuals.iter_mut().enumerate() {
@@ -122,6 +137,17 @@ impl NoiseProblem<'_> {
         });
         all.collect::<Result<_, _>>().map(Some)
     }
+}
+
+/// Factors of the variances. What the plant does not declare may be absent: it then stays at its least size, from
+/// which it can come back.
+fn factors(logarithms: &[f64], declared: usize) -> Vec<f64> {
+    let all = logarithms.iter().enumerate();
+    all.map(|(place, one)| match exp(*one) {
+        factor if place < declared => factor,
+        factor => factor.max(ABSENT),
+    })
+    .collect()
 }
 
 /// The score from the Gram matrices of all outputs.

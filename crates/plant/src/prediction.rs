@@ -97,11 +97,7 @@ impl FittedPlant {
     /// Outputs of this record in simulations over the horizon, by rows.
     #[must_use]
     pub fn simulated(&self) -> Vec<f64> {
-        let solver = Solver::new(
-            &self.problem,
-            self.extension(),
-            self.problem.noise(&self.ratios),
-        );
+        let solver = Solver::new(&self.problem, self.extension(), self.noise.clone());
         let course = solver.course(&self.solution.at.values);
         simulated(&self.problem, &course, self.points())
     }
@@ -231,7 +227,7 @@ impl FittedPlant {
             problem: &problem,
             lines: starts,
             sigmas: sigmas.clone(),
-            noise: problem.noise(&self.ratios),
+            noise: self.noise.clone(),
             base,
             parameters: parameters_of(&lines),
         };

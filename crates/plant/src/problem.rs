@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use gyrocal_hypothesis::{Column, ModelExtension, Rows};
 
-use crate::linearised::FittedNoise;
+use crate::fitted_noise::FittedNoise;
 use crate::lines::{of_parameters, of_search};
 use crate::loaded::LoadedPlant;
 use crate::record::PlantRecord;
@@ -119,16 +119,12 @@ impl Problem {
         pairs.map(|(state, value)| state.initial + value).collect()
     }
 
-    /// Noise of these standard deviations over the declared ones: outputs, then noises.
-    pub(crate) fn noise(&self, ratios: &[f64]) -> FittedNoise {
-        FittedNoise {
-            factors: ratios.iter().map(|ratio| ratio * ratio).collect(),
-            loose: Vec::new(),
-        }
-    }
-
-    /// Number of noises.
-    pub(crate) fn noises(&self) -> usize {
-        self.plant.description.outputs.len() + self.plant.description.noises.len()
+    /// The declared noise: of the outputs, of the rates.
+    pub(crate) fn declared_noise(&self) -> FittedNoise {
+        let description = &self.plant.description;
+        FittedNoise::of(&vec![
+            1.0;
+            description.outputs.len() + description.noises.len()
+        ])
     }
 }

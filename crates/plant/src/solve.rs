@@ -14,7 +14,8 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 
 use crate::dynamics::Dynamics;
 use crate::error::PlantError;
-use crate::linearised::{FittedNoise, Linearised, reduce};
+use crate::fitted_noise::FittedNoise;
+use crate::linearised::{Linearised, reduce};
 use crate::lines::{Course, parameters_of};
 use crate::problem::Problem;
 
@@ -134,10 +135,14 @@ impl<'a> Solver<'a> {
     }
 
     /// Steps on trajectory and unknowns until none is promised to gain. Where these fail and the states have no noise,
-    /// damped steps on simulations go on.
+    /// damped steps on simulations go on. Beside noise that the plant does not declare these serve alone: its states
+    /// are no unknowns.
     pub(crate) fn solve(&self, start: Iterate) -> Result<Solution, PlantError> {
         let mut values = start.values.clone();
         values.resize(self.lines.len(), 0.0);
+        if !self.noise.is_declared() && self.is_free() {
+            return self.damped(&values);
+        }
         match self.on_trajectory(start) {
             Err(PlantError::NoFit { .. } | PlantError::Singular) if self.is_free() => {
                 self.damped(&values)

@@ -12,7 +12,7 @@ use gyrocal_statistics::math::exp;
 
 use crate::dynamics::Dynamics;
 use crate::error::PlantError;
-use crate::linearised::FittedNoise;
+use crate::fitted_noise::FittedNoise;
 use crate::lines::Course;
 use crate::problem::Problem;
 use crate::solve::{Iterate, Solution, Solver};
@@ -51,7 +51,7 @@ const MOST_SUBSTEPS: usize = 64;
 /// The best fit of the nominal model.
 pub(crate) fn best(
     problem: &Problem,
-    ratios: &[f64],
+    noise: &FittedNoise,
     first: Option<&[f64]>,
 ) -> Result<(Solution, Starts), PlantError> {
     let mut found: Vec<Solution> = Vec::new();
@@ -62,7 +62,7 @@ pub(crate) fn best(
     };
     let declared = vec![0.0; problem.nominal()];
     let values = first.unwrap_or(&declared);
-    match simulated(problem, ratios, values) {
+    match simulated(problem, noise, values) {
         Ok(solution) => found.push(solution),
         Err(error) => reason = words(error),
     }
@@ -87,7 +87,7 @@ pub(crate) fn best(
             random(problem, &mut draw)
         };
         starts.tried += 1;
-        match led(problem, ratios, &values) {
+        match led(problem, noise, &values) {
             Ok(solution) => found.push(solution),
             Err(error) => reason = words(error),
         }
@@ -109,9 +109,13 @@ fn words(error: PlantError) -> String {
 }
 
 /// From a simulation.
-fn simulated(problem: &Problem, ratios: &[f64], values: &[f64]) -> Result<Solution, PlantError> {
+fn simulated(
+    problem: &Problem,
+    noise: &FittedNoise,
+    values: &[f64],
+) -> Result<Solution, PlantError> {
     let extension = ModelExtension::default();
-    let solver = Solver::new(problem, &extension, problem.noise(ratios));
+    let solver = Solver::new(problem, &extension, noise.clone());
     let course = solver.course(values);
     let mut dynamics = solver.dynamics();
     let points = dynamics.simulate(&course, &problem.initial(values));
@@ -124,7 +128,7 @@ fn simulated(problem: &Problem, ratios: &[f64], values: &[f64]) -> Result<Soluti
 }
 
 /// Led to the data by noise that falls.
-fn led(problem: &Problem, ratios: &[f64], values: &[f64]) -> Result<Solution, PlantError> {
+fn led(problem: &Problem, noise: &FittedNoise, values: &[f64]) -> Result<Solution, PlantError> {
     let extension = ModelExtension::default();
     let sizes = state_sizes(problem, values);
     let initial = problem.initial(values);
@@ -133,7 +137,7 @@ fn led(problem: &Problem, ratios: &[f64], values: &[f64]) -> Result<Solution, Pl
         values: values.to_vec(),
     };
     for level in LEVELS {
-        let mut solver = Solver::new(problem, &extension, problem.noise(ratios));
+        let mut solver = Solver::new(problem, &extension, noise.clone());
         let loose = sizes.iter().map(|size| (level * size).powi(2));
         solver.noise.loose = loose.collect();
         let parameters = problem.plant.description.parameters.iter();
@@ -151,10 +155,10 @@ fn led(problem: &Problem, ratios: &[f64], values: &[f64]) -> Result<Solution, Pl
             at = solution.at;
         }
     }
-    let solver = Solver::new(problem, &extension, problem.noise(ratios));
+    let solver = Solver::new(problem, &extension, noise.clone());
     let own = solver.solve(at.clone());
     // A trajectory that was led may be better as a simulation.
-    own.or_else(|_| simulated(problem, ratios, &at.values))
+    own.or_else(|_| simulated(problem, noise, &at.values))
 }
 
 /// A model with known parameters led to the data, which its initial states alone are to fit.
@@ -173,10 +177,7 @@ pub(crate) fn led_by(solver: &Solver<'_>, sizes: &[f64]) -> Result<Solution, Pla
             sigmas: solver.sigmas.clone(),
             base: solver.base.clone(),
             parameters: solver.parameters.clone(),
-            noise: FittedNoise {
-                loose,
-                ..solver.noise.clone()
-            },
+            noise: solver.noise.loosened(loose),
         };
         if let Ok(solution) = own.solve(at.clone()) {
             at = solution.at;
@@ -202,7 +203,7 @@ fn state_sizes(problem: &Problem, values: &[f64]) -> Vec<f64> {
     let solver = Solver::new(
         problem,
         &ModelExtension::default(),
-        problem.noise(&vec![1.0; problem.noises()]),
+        problem.declared_noise(),
     );
     let course = solver.course(values);
     let mut dynamics = solver.dynamics();
@@ -281,7 +282,7 @@ fn sensitive_substeps(problem: &Problem, course: &Course, initial: &[f64]) -> us
 
 /// Runge-Kutta steps between rows that resolve a simulation with these values.
 pub(crate) fn substeps(problem: &Problem, values: &[f64]) -> usize {
-    let noise = problem.noise(&vec![1.0; problem.noises()]);
+    let noise = problem.declared_noise();
     let solver = Solver::new(problem, &ModelExtension::default(), noise);
     let course = solver.course(values);
     let initial = problem.initial(values);

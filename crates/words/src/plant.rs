@@ -4,7 +4,8 @@ use crate::diagnosis::likelihood;
 use crate::format::tested;
 use gyrocal_answer::{
     AlternativeKind, Answer, Finding, Gain, NextRun, NullDirection, NullPart, OutputError,
-    OutputTest, Parameter, RecordResult, RecordSummary, Subject, UnmodelledTerm, Verdict,
+    OutputTest, Parameter, RecordResult, RecordSummary, Subject, UndeclaredNoise, UnmodelledTerm,
+    Verdict,
 };
 use gyrocal_document::{Screen, Standing};
 use gyrocal_statistics::format::{estimate, p_value, significant};
@@ -63,6 +64,8 @@ pub fn facts(answer: &Answer) -> Vec<(&'static str, String)> {
     let tests = answer.remainder.outputs.iter();
     let rare = tests.filter(|one| is_coloured(one));
     all.extend(rare.map(|one| ("remainder", coloured(one))));
+    let undeclared = answer.undeclared_noise.iter();
+    all.extend(undeclared.map(|one| ("noise", undeclared_noise(one))));
     let undetermined = answer.undetermined.iter();
     all.extend(undetermined.map(|one| ("undetermined", direction(one))));
     if !answer.still_inputs.is_empty() {
@@ -76,6 +79,25 @@ pub fn facts(answer: &Answer) -> Vec<(&'static str, String)> {
     let next = answer.next_runs.iter();
     all.extend(next.map(|one| ("next run", next_run(one))));
     all
+}
+
+/// Noise that the plant does not declare, a sentence or two.
+#[must_use]
+pub fn undeclared_noise(one: &UndeclaredNoise) -> String {
+    let size = format!("{} {}", significant(one.sigma, 2), one.unit);
+    let what = match one.time_s {
+        Some(time_s) => format!(
+            "Readings of {} have noise of {size} that is correlated over {} s",
+            one.channel,
+            significant(time_s, 2)
+        ),
+        None => format!("The {} has noise of {size}", one.channel),
+    };
+    let instead = match one.instead.as_slice() {
+        [] => String::new(),
+        others => format!(" Noise of {} explains as much.", others.join(", or of ")),
+    };
+    format!("{what}, which the plant does not declare; effects were judged beside it.{instead}")
 }
 
 /// The verdict, a sentence.

@@ -84,6 +84,7 @@ impl Evidence<'_, '_> {
                 .collect(),
             threshold: Some(threshold).filter(|threshold| threshold.is_finite()),
             noise: noise(self.estimate),
+            undeclared_noise: Vec::new(),
             model_noise: Some(model_noise(self.validated, self.nominal)),
             noise_audit: Some(audit(self.audit)),
             allan: self.allan.as_ref().map(allan),

@@ -73,6 +73,7 @@ fn result(record: &Record, options: &DiagnoseOptions, setup: Vec<SetupProblem>) 
         threshold: None,
         power: Vec::new(),
         noise: Vec::new(),
+        undeclared_noise: Vec::new(),
         model_noise: None,
         noise_audit: None,
         allan: None,

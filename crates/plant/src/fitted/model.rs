@@ -8,7 +8,6 @@ use nalgebra::{DMatrix, DVector};
 use super::FittedPlant;
 use crate::error::PlantError;
 use crate::lines::of_parameters;
-use crate::noise::NoiseProblem;
 
 /// Smallest range of a covariate that a dependence on it is looked for over, as a share of its size.
 const LEAST_RANGE: f64 = 1e-6;
@@ -67,11 +66,11 @@ impl FittedModel for FittedPlant {
     }
 
     fn refitted(&self, extension: &ModelExtension) -> Result<Self, PlantError> {
-        self.solved(extension, self.ratios.clone(), self.start_of(extension))
+        self.solved(extension, self.noise.clone(), self.start_of(extension))
     }
 
     fn rate_noise(&self) -> RateNoise {
-        self.as_rate_noise(&self.ratios)
+        self.as_rate_noise(&self.noise)
     }
 
     fn fit_rate_noise(
@@ -79,23 +78,15 @@ impl FittedModel for FittedPlant {
         _walking: &[usize],
         absent: &[usize],
     ) -> Result<RateNoiseFit, PlantError> {
-        let (lines, sigmas) = (self.lines(), self.problem.sigmas(&self.extension));
-        let unknown = NoiseProblem {
-            problem: &self.problem,
-            lin: &self.solution.lin,
-            lines: &lines,
-            sigmas: &sigmas,
-            values: &self.solution.at.values,
-            absent,
-        };
-        let fit = unknown.maximise(&self.ratios)?;
+        let fit = self.with_noise_problem_of(absent, |unknown| unknown.maximise(&self.noise))?;
         let rates = self.plant().rates.len();
         // Scores of different channels are compared as they are: see `RateNoiseFit::white_sigma`, whose
         // degrees of freedom would correct those of rates alone.
         let mut white_sigma = vec![f64::INFINITY; rates];
         white_sigma.extend_from_slice(&fit.sigmas);
+        white_sigma.resize(rates + fit.noise.unknowns().len(), f64::INFINITY);
         Ok(RateNoiseFit {
-            noise: self.as_rate_noise(&fit.ratios),
+            noise: self.as_rate_noise(&fit.noise),
             log_likelihood: fit.log_likelihood,
             walk_sigma: vec![f64::INFINITY; white_sigma.len()],
             white_sigma,
@@ -108,8 +99,8 @@ impl FittedModel for FittedPlant {
 
     fn with_rate_noise(&self, noise: &RateNoise) -> Result<Self, PlantError> {
         let rates = self.plant().rates.len();
-        let ratios = noise.white[rates..].to_vec();
-        self.solved(&self.extension, ratios, self.solution.at.clone())
+        let noise = self.noise.with_unknowns(&noise.white[rates..]);
+        self.in_noise(noise)
     }
 
     fn sets_need_fits(&self) -> bool {
@@ -138,11 +129,11 @@ impl FittedModel for FittedPlant {
     }
 
     fn state_jumps(&self) -> Result<Vec<Option<StateJump>>, PlantError> {
-        let (lines, noise) = (self.lines(), self.problem.noise(&self.ratios));
+        let lines = self.lines();
         let (lin, covariance) = (&self.solution.lin, &self.solution.covariance);
         let n = lin.rows.layout.states;
         let mut jumps = vec![None; self.record().len()];
-        lin.pass(&noise, &lines)
+        lin.pass(&self.noise, &lines)
             .jumps(|row, found| {
                 let cross = DMatrix::from_fn(lines.len(), n, |i, j| found.columns[i + 1][j]);
                 let projected = cross.tr_mul(&(covariance * &cross));

@@ -1,0 +1,63 @@
+//! A search in white noise, and one in all noise where that is in doubt.
+//!
+//! What a search in white noise finds is proposed to a second one, in which the levels and correlation times of all
+//! noise are estimated anew in each fit: a name stands if it is detected there. The first is kept where both agree and
+//! its residuals need no more than white noise.
+
+use gyrocal_hypothesis::{SearchOptions, Searched, Selection, search, search_from};
+
+use crate::error::PlantError;
+use crate::fitted::FittedPlant;
+
+/// Searches a record for the effects of a selection.
+///
+/// # Errors
+/// Those of a search in white noise. Where the noise cannot be estimated beyond that, its result stands as it is, and
+/// the tests of what it leaves say so.
+pub(crate) fn searched(
+    nominal: FittedPlant,
+    selection: &Selection,
+    options: &SearchOptions,
+    is_white: impl Fn(&Searched<FittedPlant>) -> Result<bool, PlantError>,
+) -> Result<Searched<FittedPlant>, PlantError> {
+    let rows = nominal.rows();
+    let first = search(nominal, rows, selection, options)?;
+    let has_found = !first.findings.is_empty() || !first.unmodelled.is_empty();
+    if !has_found && is_white(&first)? {
+        return Ok(first);
+    }
+    let Some(second) = in_all_noise(&first, selection, options)? else {
+        return Ok(first);
+    };
+    let names = |of: &Searched<FittedPlant>| {
+        let mut names: Vec<&str> = of.findings.iter().map(|one| one.effect).collect();
+        names.sort_unstable();
+        (names, of.unmodelled.len())
+    };
+    if names(&first) == names(&second) && !second.fitted.needs_further_noise()? {
+        return Ok(first);
+    }
+    Ok(second)
+}
+
+/// The search in all noise; `None` where the nominal model needs no more than white noise, or has no fit with it.
+fn in_all_noise(
+    first: &Searched<FittedPlant>,
+    selection: &Selection,
+    options: &SearchOptions,
+) -> Result<Option<Searched<FittedPlant>>, PlantError> {
+    let nominal = match first.nominal.in_all_noise() {
+        Ok(Some(nominal)) => nominal,
+        Ok(None) | Err(PlantError::NoFit { .. } | PlantError::Singular) => return Ok(None),
+        Err(PlantError::NotFinite { .. }) => return Ok(None),
+        Err(other) => return Err(other),
+    };
+    let rows = nominal.rows();
+    match search_from(nominal, rows, selection, options, first.proposals()) {
+        Ok(second) => Ok(Some(second)),
+        Err(PlantError::NoFit { .. } | PlantError::Singular | PlantError::NotFinite { .. }) => {
+            Ok(None)
+        }
+        Err(other) => Err(other),
+    }
+}

@@ -1,0 +1,250 @@
+//! All noise together: white noise of the outputs, process noise of every rate, correlated noise of every output.
+//!
+//! Names that hold in white noise alone are often false: correlated readings and what drives a plant unseen look like
+//! effects. White levels, process noises and first-order correlations are estimated together, in each fit anew.
+//! Correlation times follow one after the other between levels at their best.
+
+use gyrocal_inference::{Correlated, Process};
+use gyrocal_statistics::{chi_square_tail, median_interval_s};
+
+use super::{NoiseFit, NoiseProblem};
+use crate::error::PlantError;
+use crate::fitted::FittedPlant;
+use crate::fitted_noise::FittedNoise;
+
+/// Probability that white noise alone makes noise that a plant does not declare seem needed. The test of twice its gain
+/// counts an unknown for each process noise and two for each correlated noise. It is conservative: none of their sizes
+/// can be negative.
+const NEEDED_PROBABILITY: f64 = 0.01;
+
+/// A correlation time is at most this share of a record: what correlates for longer is a drift.
+const LONGEST: f64 = 0.05;
+
+/// The shortest over the interval of the rows: the correlation of neighbours is 0.05.
+const SHORTEST: f64 = 1.0 / 3.0;
+
+/// Factors that correlation times are changed by, one after the other.
+const FACTORS: [f64; 3] = [2.0, 1.4, 1.15];
+
+/// Gain of the log-likelihood that ends a search for a time.
+const LEAST_GAIN: f64 = 0.01;
+
+/// Variance over that which the record could just show, from which the correlation time of a noise is estimated.
+const PRESENT: f64 = 0.1;
+
+/// First sizes of process noise and of correlated noise, over what the record could just show, and the first
+/// correlation time over the interval of the rows: either may explain what the other does.
+const STARTS: [(f64, f64, f64); 4] = [
+    (1.0, 1.0, 5.0),
+    (0.1, 5.0, 5.0),
+    (0.1, 5.0, 30.0),
+    (5.0, 0.1, 5.0),
+];
+
+/// Size of a probing noise over that of its state or output.
+const PROBE: f64 = 1e-6;
+
+impl NoiseProblem<'_> {
+    /// The largest likelihood by sizes and correlation times, from these.
+    pub(crate) fn maximise(&self, start: &FittedNoise) -> Result<NoiseFit, PlantError> {
+        let mut best = self.sizes(start, &[])?;
+        let Some(bounds) = self.time_bounds().filter(|_| !start.correlated.is_empty()) else {
+            return Ok(best);
+        };
+        let first = start.factors.len() - start.correlated.len();
+        for factor in FACTORS {
+            for index in 0..start.correlated.len() {
+                for by in [factor, 1.0 / factor] {
+                    while best.noise.factors[first + index] > PRESENT {
+                        let now = best.noise.correlated[index].time_s;
+                        let time_s = (now * by).clamp(bounds.0, bounds.1);
+                        let tried = self.sizes(&best.noise.with_time(index, time_s), &[])?;
+                        if time_s == now || tried.log_likelihood < best.log_likelihood + LEAST_GAIN
+                        {
+                            break;
+                        }
+                        best = tried;
+                    }
+                }
+            }
+        }
+        Ok(best)
+    }
+
+    /// The shortest and the longest correlation time; `None` if the record is too short for any.
+    fn time_bounds(&self) -> Option<(f64, f64)> {
+        let record = &self.problem.record;
+        let bounds = (
+            SHORTEST * median_interval_s(&record.time_s),
+            LONGEST * record.longest_s(),
+        );
+        (bounds.0 < bounds.1).then_some(bounds)
+    }
+
+    /// All noises of sizes that the record could just show, beside these declared ones; none that it cannot see.
+    fn just_visible(&self, declared: &FittedNoise) -> Result<FittedNoise, PlantError> {
+        let description = &self.problem.plant.description;
+        let (states, outputs) = (description.states.len(), description.outputs.len());
+        let record = &self.problem.record;
+        let duration_s = record.longest_s();
+        let process = (0..states).map(|state| {
+            let size = PROBE * rms(self.points.iter().skip(state).step_by(states));
+            Process {
+                state,
+                density: size * size / duration_s,
+            }
+        });
+        let process: Vec<Process> = process.filter(|one| one.density > 0.0).collect();
+        let time_s = self
+            .time_bounds()
+            .map(|(least, most)| (STARTS[0].2 * least / SHORTEST).min(most));
+        let correlated = (0..outputs).filter_map(|output| {
+            let own = description.outputs[output].sigma;
+            Some(Correlated {
+                output,
+                time_s: time_s?,
+                variance: PROBE * PROBE * own * own * declared.factors[output],
+            })
+        });
+        let correlated: Vec<Correlated> = correlated.collect();
+        let count = process.len() + correlated.len();
+        let mut factors = declared.factors.clone();
+        factors.extend(core::iter::repeat_n(1.0, count));
+        let probing = FittedNoise {
+            factors,
+            process,
+            correlated,
+            loose: Vec::new(),
+        };
+        let score = self
+            .lin
+            .pass(&probing, &[])
+            .noise_score()
+            .map_err(|_| PlantError::Singular)?;
+        let all = probing.factors.len();
+        // The information on a logarithm goes with the square of the variance, as long as that is small.
+        let scale = |place: usize| score.information[place * all + place].sqrt().recip();
+        let (first, second) = (
+            declared.factors.len(),
+            declared.factors.len() + probing.process.len(),
+        );
+        let is_seen = |scale: &f64| scale.is_finite();
+        let process = probing.process.iter().zip(first..);
+        let process = process.filter_map(|(one, place)| {
+            let by = Some(scale(place)).filter(is_seen)?;
+            Some(Process {
+                density: one.density * by,
+                ..*one
+            })
+        });
+        let correlated = probing.correlated.iter().zip(second..);
+        let correlated = correlated.filter_map(|(one, place)| {
+            let by = Some(scale(place)).filter(is_seen)?;
+            Some(Correlated {
+                variance: one.variance * by,
+                ..*one
+            })
+        });
+        let (process, correlated): (Vec<_>, Vec<_>) = (process.collect(), correlated.collect());
+        let mut factors = declared.factors.clone();
+        factors.extend(core::iter::repeat_n(1.0, process.len() + correlated.len()));
+        Ok(FittedNoise {
+            factors,
+            process,
+            correlated,
+            loose: Vec::new(),
+        })
+    }
+
+    /// The best of several starts.
+    fn from_starts(&self, visible: &FittedNoise) -> Result<NoiseFit, PlantError> {
+        let first = visible.declared();
+        let interval_s = median_interval_s(&self.problem.record.time_s);
+        let bounds = self.time_bounds();
+        let mut best: Option<NoiseFit> = None;
+        for (process, correlated, rows) in STARTS {
+            let mut start = visible.clone();
+            let second = first + start.process.len();
+            start.factors[first..second].fill(process);
+            start.factors[second..].fill(correlated);
+            if let Some((least, most)) = bounds {
+                for one in &mut start.correlated {
+                    one.time_s = (rows * interval_s).clamp(least, most);
+                }
+            }
+            // Another start may lead to where this one does not.
+            let Ok(found) = self.sizes(&start, &[]) else {
+                continue;
+            };
+            if best
+                .as_ref()
+                .is_none_or(|best| best.log_likelihood < found.log_likelihood)
+            {
+                best = Some(found);
+            }
+        }
+        self.maximise(&best.ok_or(PlantError::Singular)?.noise)
+    }
+}
+
+impl FittedPlant {
+    /// The same model with all noise estimated together; `None` where the record has no more than white noise, and
+    /// of a plant that declares noise of rates.
+    ///
+    /// # Errors
+    /// [`PlantError::Singular`], and those of a fit.
+    pub(crate) fn in_all_noise(&self) -> Result<Option<Self>, PlantError> {
+        if !self.loaded().description.noises.is_empty() {
+            return Ok(None);
+        }
+        let white = self.with_noise_problem(|unknown| {
+            let declared = unknown.sizes(&self.noise.loosened(Vec::new()), &[])?;
+            let visible = unknown.just_visible(&declared.noise)?;
+            let all = unknown.from_starts(&visible)?;
+            Ok(is_needed(&all, &declared).then_some(all.noise))
+        })?;
+        let Some(mut noise) = white else {
+            return Ok(None);
+        };
+        let mut fitted = self.in_noise(noise)?;
+        // Parameters and noise in turn: white noise had led the first fit.
+        for _ in 0..2 {
+            noise = fitted
+                .with_noise_problem(|unknown| unknown.maximise(&fitted.noise))?
+                .noise;
+            fitted = fitted.in_noise(noise)?;
+        }
+        Ok(Some(fitted))
+    }
+
+    /// Whether this model needs more than the noise that the plant declares.
+    ///
+    /// # Errors
+    /// [`PlantError::Singular`].
+    pub(crate) fn needs_further_noise(&self) -> Result<bool, PlantError> {
+        if self.noise.is_declared() {
+            return Ok(false);
+        }
+        self.with_noise_problem(|unknown| {
+            let with = unknown.sizes(&self.noise, &[])?;
+            let declared = unknown.sizes(&self.noise.loosened(Vec::new()), &[])?;
+            Ok(is_needed(&with, &declared))
+        })
+    }
+}
+
+/// Whether white noise would seldom gain as much.
+fn is_needed(with: &NoiseFit, declared: &NoiseFit) -> bool {
+    let unknowns = with.noise.process.len() + 2 * with.noise.correlated.len();
+    let gain = 2.0 * (with.log_likelihood - declared.log_likelihood);
+    chi_square_tail(gain, unknowns as f64).is_some_and(|p| p < NEEDED_PROBABILITY)
+}
+
+fn rms<'v>(values: impl Iterator<Item = &'v f64>) -> f64 {
+    let (mut sum, mut count) = (0.0, 0.0);
+    for value in values {
+        sum += value * value;
+        count += 1.0;
+    }
+    f64::sqrt(sum / f64::max(count, 1.0))
+}
