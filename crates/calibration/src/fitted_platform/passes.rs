@@ -250,7 +250,7 @@ impl FittedPlatform<'_> {
                 let parameters = self.problem.parameters(run);
                 let score = self.problem.with_run(run, &parameters, |pass| {
                     let mut factors = factors.to_vec();
-                    factors.resize(factors.len() + pass.walks.walks.len(), 1.0);
+                    factors.resize(factors.len() + pass.further.walks.walks.len(), 1.0);
                     Pass {
                         factors: &factors,
                         ..pass.on(self.kept(run))
