@@ -290,13 +290,14 @@ where
     I: Conditions,
 {
     let parameters = solved.problem.parameters(index);
-    solved
-        .problem
-        .with_run(index, &parameters, |pass| {
-            let pass = pass.on(solved.solution.kept[index].as_deref());
-            noise::estimate(|factors| Pass { factors, ..pass }.noise_score())
+    solved.problem.with_run(index, &parameters, |pass| {
+        let pass = pass.on(solved.solution.kept[index].as_deref());
+        noise::estimate(|factors, first| {
+            Pass { factors, ..pass }
+                .noise_score_from(first)
+                .map_err(|error| CalibrationError::pass(index, error))
         })
-        .map_err(|error| CalibrationError::pass(index, error))
+    })
 }
 
 /// Sensitivities of the coefficients to the considered parameters of the first run's site.

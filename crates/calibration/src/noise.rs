@@ -1,17 +1,25 @@
 //! Maximum-likelihood estimate of the noise relative to the declared noise.
 
-use gyrocal::estimation::EstimationError;
-use gyrocal_inference::NoiseScore;
+use gyrocal_inference::{Asked, Maximum, NoiseScore, Restricted, UnknownNoise};
 use gyrocal_record::{Bench, NoiseEstimate, NoiseRatio};
-use gyrocal_statistics::NORMAL_97_5;
-use nalgebra::{Cholesky, DMatrix, DVector};
+use nalgebra::{Cholesky, DVector};
+
+use crate::error::CalibrationError;
+use crate::fitted_platform::AXES;
 
 /// Most steps of Fisher's scoring; four bring a variance that is off by a factor of a hundred within
 /// a hundredth of its sigma.
 const MAX_STEPS: usize = 12;
 
-/// Largest step in the logarithm of a variance.
-const LARGEST_STEP: f64 = 2.0;
+/// Gain of the log-likelihood that a step expects below which it is not made: a hundredth of each sigma.
+const LEAST_GAIN: f64 = 5e-5;
+
+/// Logarithm of a variance over the declared one that stands for an end that there is not: a thousand in size.
+const LARGEST: f64 = 13.8;
+
+/// Precision of the logarithm of a variance over the declared one before a record: a noise far below the others is
+/// unobservable. A prior of e^10 keeps its logarithm finite and has no weight where the noise is observable.
+const PRIOR_PRECISION: f64 = 1e-2;
 
 /// White noise of a gyro, held over one minute, below which a bench description is implausible: it
 /// moves a platform by 1e-9 rad in a day, a ten-thousandth of the resolution of one sample of a good
@@ -25,51 +33,56 @@ pub fn is_gyro_noise_implausible(bench: &Bench) -> bool {
     bench.gyro_noise_deg_per_h < LEAST_GYRO_DEG_PER_H
 }
 
-/// Maximises the likelihood over the logarithms of six variances by Fisher's scoring.
+/// Maximises the likelihood over the logarithms of six variances by Fisher's scoring; intervals are by the profile of
+/// the likelihood. `score_from` gives the
+/// score with the derivatives by the noises from one on.
 pub(crate) fn estimate(
-    score: impl Fn(&[f64]) -> Result<NoiseScore, EstimationError>,
-) -> Result<NoiseEstimate, EstimationError> {
-    let mut logarithm = DVector::<f64>::zeros(6);
-    let mut sigma = DVector::<f64>::repeat(6, f64::INFINITY);
-    for _ in 0..MAX_STEPS {
-        let factors: Vec<f64> = logarithm.iter().map(|value| value.exp()).collect();
-        let found = score(&factors)?;
-        // A noise far below the others is unobservable: a prior of e^10 about the declared one keeps
-        // its logarithm finite and has no weight where the noise is observable.
-        let prior = 1e-2;
-        // Random walks come last and are held.
-        let stride = found.d_log_variance.len();
-        let mut information = DMatrix::from_fn(6, 6, |i, j| found.information[i * stride + j]);
-        let mut gradient = DVector::from_iterator(6, found.gradient().into_iter().take(6));
-        for i in 0..6 {
-            information[(i, i)] += prior;
-            gradient[i] -= prior * logarithm[i];
-        }
-        let Some(cholesky) = Cholesky::new(information) else {
-            break;
+    score_from: impl Fn(&[f64], usize) -> Result<NoiseScore, CalibrationError>,
+) -> Result<NoiseEstimate, CalibrationError> {
+    let noises = (0..2 * AXES).map(|factor| UnknownNoise {
+        factor,
+        prior: Some((0.0, PRIOR_PRECISION)),
+        is_held: false,
+    });
+    let restricted = Restricted {
+        values: &[],
+        sigmas: &[],
+        integrated: Vec::new(),
+        absent: &[],
+        noises: noises.collect(),
+    };
+    let factors = |logarithms: &[f64]| -> Vec<f64> {
+        logarithms.iter().map(|logarithm| logarithm.exp()).collect()
+    };
+    let mut score = |asked: Asked<'_>| {
+        let first = if asked.with_derivatives {
+            0
+        } else {
+            usize::MAX
         };
-        let step = cholesky.solve(&gradient);
-        let inverse = cholesky.inverse();
-        sigma = inverse.diagonal().map(f64::sqrt);
-        logarithm += step.map(|step| step.clamp(-LARGEST_STEP, LARGEST_STEP));
-        if step
-            .iter()
-            .zip(sigma.iter())
-            .all(|(step, sigma)| step.abs() < 0.01 * sigma)
-        {
-            break;
-        }
-    }
-    let ratio = |index: usize| {
-        let at = |logarithm: f64| (0.5 * logarithm).exp();
+        score_from(&factors(asked.logarithms), first)
+    };
+    let start = DVector::zeros(2 * AXES);
+    let (logarithms, at) = restricted.maximise(start, (LEAST_GAIN, MAX_STEPS), &mut score)?;
+    let covariance = Cholesky::new(at.information)
+        .ok_or(CalibrationError::NotPositiveDefinite)?
+        .inverse();
+    let maximum = Maximum {
+        logarithms: &logarithms,
+        covariance: &covariance,
+        value: at.value,
+    };
+    let mut value = |moved: &[f64]| restricted.value(moved, &mut score).ok();
+    let mut ratio = |index: usize| {
+        let size = |logarithm: f64| (0.5 * logarithm).exp();
+        let [low, high] = maximum.interval(index, &mut value);
         NoiseRatio {
-            ratio: at(logarithm[index]),
-            interval: [-1.0, 1.0]
-                .map(|side| at(logarithm[index] + side * NORMAL_97_5 * sigma[index])),
+            ratio: size(logarithms[index]),
+            interval: [low.map_or(0.0, size), size(high.unwrap_or(LARGEST))],
         }
     };
     Ok(NoiseEstimate {
-        accel: core::array::from_fn(ratio),
+        accel: core::array::from_fn(&mut ratio),
         gyro: [3, 4, 5].map(ratio),
     })
 }

@@ -346,8 +346,16 @@ impl Pass<'_> {
     /// # Errors
     /// As [`Self::reduce`].
     pub fn noise_score(&self) -> Result<NoiseScore, EstimationError> {
+        self.noise_score_from(0)
+    }
+
+    /// The same with derivatives by the noises from `first` on only; those by the others are zero.
+    ///
+    /// # Errors
+    /// As [`Self::reduce`].
+    pub fn noise_score_from(&self, first: usize) -> Result<NoiseScore, EstimationError> {
         let none = vec![0.0; self.columns.len()];
-        let mut filter = NoiseFilter::new(self, 0, 0);
+        let mut filter = NoiseFilter::new(self, 0, first);
         self.run(Some(&none), &mut filter)?;
         Ok(filter.finish())
     }

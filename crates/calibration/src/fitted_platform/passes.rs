@@ -244,7 +244,7 @@ impl FittedPlatform<'_> {
     /// # Errors
     /// [`CalibrationError::Pass`].
     pub fn noise(&self) -> Result<NoiseEstimate, CalibrationError> {
-        noise::estimate(|factors| {
+        noise::estimate(|factors, first| {
             let mut total: Option<NoiseScore> = None;
             for run in 0..self.records() {
                 let parameters = self.problem.parameters(run);
@@ -255,15 +255,13 @@ impl FittedPlatform<'_> {
                         factors: &factors,
                         ..pass.on(self.kept(run))
                     }
-                    .noise_score()
-                })?;
+                    .noise_score_from(first)
+                });
+                let score = score.map_err(|error| CalibrationError::pass(run, error))?;
                 add_score(&mut total, score);
             }
-            total.ok_or(EstimationError::InvalidArgument {
-                expected: "at least one record",
-            })
+            total.ok_or(CalibrationError::NoRecords)
         })
-        .map_err(|error: EstimationError| CalibrationError::pass(0, error))
     }
 }
 

@@ -3,8 +3,7 @@
 mod likelihood;
 
 use gyrocal_hypothesis::{RateNoise, RateNoiseFit};
-use gyrocal_inference::Walk;
-use gyrocal_statistics::NORMAL_97_5;
+use gyrocal_inference::{Maximum, Walk};
 use likelihood::Likelihood;
 use nalgebra::{Cholesky, DVector};
 
@@ -20,10 +19,6 @@ pub const GYRO_NOISE_PRIOR_SIGMA: f64 = 0.7;
 /// record's duration.
 const NO_WALK: f64 = 1e-6;
 
-/// Length of an interval of the logarithm of a density beyond which it has no end: a factor of 400 in a
-/// walk.
-const LONGEST_INTERVAL: f64 = 12.0;
-
 /// Fewest degrees of freedom that are told. Below, the first order fails: with a normal logarithm of the
 /// variance, of standard deviation 1.3, the largest of a walk that is named, the 97.5 % point is 3.1
 /// sigmas, that of three degrees, where the first order has one degree and 12.7 sigmas.
@@ -32,29 +27,6 @@ const FEWEST_DEGREES: f64 = 3.0;
 /// Gain of the log-likelihood that a step expects below which it is not made where effects are integrated out: a
 /// logarithm is then good to two hundredths of its standard deviation, a tenth of what that corrects.
 const RESTRICTED_GAIN: f64 = 2e-4;
-
-/// Most evaluations for one end of an interval, and the error of an end that is good enough, in
-/// standard deviations.
-const MAX_EVALUATIONS: usize = 6;
-const END_PRECISION: f64 = 0.02;
-
-/// The distance from the maximum at which twice the log-likelihood has fallen to the 95 % point of χ²(1),
-/// in standard deviations; `None` if that is farther than `longest`. The root of the fall is nearly
-/// proportional to the distance.
-fn profile_end(longest: f64, fall: impl Fn(f64) -> f64) -> Option<f64> {
-    let mut distance = NORMAL_97_5;
-    for _ in 0..MAX_EVALUATIONS {
-        let root = fall(distance).max(0.0).sqrt();
-        if (root - NORMAL_97_5).abs() < END_PRECISION {
-            break;
-        }
-        if distance >= longest && root < NORMAL_97_5 {
-            return None;
-        }
-        distance = (distance * (NORMAL_97_5 / root).clamp(0.4, 2.5)).min(longest);
-    }
-    Some(distance)
-}
 
 impl FittedPlatform<'_> {
     /// Number of parameters of the extension that have a prior: what the bench declares uncertain.
@@ -150,25 +122,18 @@ impl FittedPlatform<'_> {
         let covariance = Cholesky::new(at.information.clone())
             .ok_or(CalibrationError::NotPositiveDefinite)?
             .inverse();
+        let maximum = Maximum {
+            logarithms: &logarithms,
+            covariance: &covariance,
+            value: at.value,
+        };
         for (index, rate) in walking.into_iter().enumerate() {
             let own = AXES + index;
-            let along = covariance.column(own) / covariance[(own, own)].sqrt();
-            // Where the filter leaves the numbers the likelihood is nothing.
-            let fall = |deviates: f64| {
-                let moved = &logarithms + &along * deviates;
-                let value = likelihood.value(moved.as_slice());
-                value.map_or(f64::INFINITY, |value| 2.0 * (at.value - value))
+            let size = |logarithm: f64| {
+                fit.noise.walk[rate] * (0.5 * (logarithm - logarithms[own])).exp()
             };
-            let sigma = covariance[(own, own)].sqrt();
-            let factor = |deviates: f64| (0.5 * sigma * deviates).exp();
-            let longest = LONGEST_INTERVAL / sigma;
-            let low = profile_end(longest, |deviates| fall(-deviates));
-            let high = profile_end(longest, fall);
-            let size = fit.noise.walk[rate];
-            intervals[rate] = high.map(|high| {
-                let low = low.map_or(0.0, |low| size * factor(-low));
-                [low, size * factor(high)]
-            });
+            let [low, high] = maximum.interval(own, &mut |moved| likelihood.value(moved).ok());
+            intervals[rate] = high.map(|high| [low.map_or(0.0, size), size(high)]);
         }
         Ok(intervals)
     }
