@@ -80,7 +80,7 @@ pub(crate) fn answer(
         ranking: ranking.collect(),
         threshold: (!searched.ranking.is_empty()).then_some(searched.threshold),
         power: Vec::new(),
-        noise: noise(plant, searched),
+        noise: noise(plant, fitted)?,
         undeclared_noise: fitted.undeclared_noise()?,
         model_noise: None,
         noise_audit: None,
@@ -261,25 +261,20 @@ fn parameters(
     coefficients(all, has_findings)
 }
 
-fn noise(plant: &LoadedPlant, searched: &Searched<FittedPlant>) -> Vec<NoiseLevel> {
-    let rates = plant.tables().rates.len();
-    let (ratios, sigmas) = (&searched.noise.noise.white, &searched.noise.white_sigma);
+fn noise(plant: &LoadedPlant, fitted: &FittedPlant) -> Result<Vec<NoiseLevel>, PlantError> {
+    let levels = fitted.noise_levels()?;
     let description = &plant.description;
     let outputs = description.outputs.iter().map(|one| one.id.clone());
     let driven = description.noises.iter();
     let driven = driven.map(|one| format!("rate of {}", description.states[one.state].id));
-    outputs
-        .chain(driven)
-        .zip(ratios[rates..].iter().zip(&sigmas[rates..]))
-        .map(|(channel, (ratio, sigma))| {
-            let factor = exp(NORMAL_97_5 * sigma);
-            NoiseLevel {
-                channel,
-                ratio: *ratio,
-                interval: [ratio / factor, ratio * factor],
-            }
+    let channels = outputs.chain(driven).zip(levels);
+    Ok(channels
+        .map(|(channel, [ratio, low, high])| NoiseLevel {
+            channel,
+            ratio,
+            interval: [low, high],
         })
-        .collect()
+        .collect())
 }
 
 /// What the extended model leaves: Ljung and Box's test of the innovations of each output, and terms outside of

@@ -195,6 +195,11 @@ impl FittedPlant {
         Ok(solution.whole.get_or_init(|| whole))
     }
 
+    /// The declared noises of this model over their declared standard deviations, each with its 95 % interval.
+    pub(crate) fn noise_levels(&self) -> Result<Vec<[f64; 3]>, PlantError> {
+        self.with_noise_problem(|unknown| unknown.intervals(&self.noise))
+    }
+
     /// What the noise of this model is estimated from.
     pub(crate) fn with_noise_problem<R>(
         &self,

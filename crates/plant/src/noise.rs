@@ -4,7 +4,7 @@
 mod all;
 mod needed;
 
-use gyrocal_inference::{Asked, Column, NoiseScore, Reduced, Restricted, UnknownNoise};
+use gyrocal_inference::{Asked, Column, Maximum, NoiseScore, Reduced, Restricted, UnknownNoise};
 use gyrocal_statistics::math::{exp, ln};
 use nalgebra::{Cholesky, DMatrix, DVector};
 
@@ -18,6 +18,9 @@ pub(crate) const PRIOR_SIGMA: f64 = 1.0;
 
 /// Precision of the logarithm of its variance.
 const PRIOR_PRECISION: f64 = 0.25 / (PRIOR_SIGMA * PRIOR_SIGMA);
+
+/// Distance of a logarithm of a variance that stands for an end of its interval that there is not: a thousand in size.
+const UNBOUNDED: f64 = 13.8;
 
 /// Most steps of Fisher's scoring.
 const MAX_STEPS: usize = 20;
@@ -38,6 +41,14 @@ pub(crate) struct NoiseFit {
     pub(crate) log_likelihood: f64,
 }
 
+/// The largest likelihood by the sizes of noises.
+struct Found {
+    logarithms: DVector<f64>,
+    /// Of their errors; `None` where the curvature is none of a maximum.
+    covariance: Option<DMatrix<f64>>,
+    value: f64,
+}
+
 /// A fit whose noise is unknown.
 pub(crate) struct NoiseProblem<'a> {
     pub(crate) problem: &'a Problem,
@@ -54,6 +65,54 @@ pub(crate) struct NoiseProblem<'a> {
 impl NoiseProblem<'_> {
     /// The largest likelihood by the sizes, from these; noises in `held` stay.
     fn sizes(&self, start: &FittedNoise, held: &[usize]) -> Result<NoiseFit, PlantError> {
+        self.maximum(start, held, |found, _| {
+            let sigma = |i: usize| {
+                let own = found
+                    .covariance
+                    .as_ref()
+                    .map(|own| 0.5 * own[(i, i)].sqrt());
+                own.unwrap_or(PRIOR_SIGMA)
+            };
+            NoiseFit {
+                noise: FittedNoise {
+                    factors: factors(found.logarithms.as_slice(), start.declared()),
+                    ..start.clone()
+                },
+                sigmas: (0..start.factors.len()).map(sigma).collect(),
+                log_likelihood: found.value,
+            }
+        })
+    }
+
+    /// The sizes of the declared noises at the largest likelihood, each with its 95 % interval by the profile of that.
+    pub(crate) fn intervals(&self, start: &FittedNoise) -> Result<Vec<[f64; 3]>, PlantError> {
+        self.maximum(start, &[], |found, value| {
+            let size = |logarithm: f64| exp(0.5 * logarithm);
+            let level = |place: usize| {
+                let ratio = size(found.logarithms[place]);
+                let Some(covariance) = &found.covariance else {
+                    return [ratio, 0.0, ratio * size(UNBOUNDED)];
+                };
+                let maximum = Maximum {
+                    logarithms: &found.logarithms,
+                    covariance,
+                    value: found.value,
+                };
+                let [low, high] = maximum.interval(place, value);
+                let high = high.unwrap_or(found.logarithms[place] + UNBOUNDED);
+                [ratio, low.map_or(0.0, size), size(high)]
+            };
+            (0..start.declared()).map(level).collect()
+        })
+    }
+
+    /// Goes to the largest likelihood by the sizes; `then` has it and the likelihood elsewhere.
+    fn maximum<R>(
+        &self,
+        start: &FittedNoise,
+        held: &[usize],
+        then: impl FnOnce(&Found, &mut dyn FnMut(&[f64]) -> Option<f64>) -> R,
+    ) -> Result<R, PlantError> {
         let problem = self.problem;
         let count = self.values.len();
         let nominal = problem.nominal().min(count);
@@ -88,19 +147,17 @@ impl NoiseProblem<'_> {
         for (output, determinant) in at.determinants.iter().enumerate().take(outputs) {
             left[(output, output)] += 0.5 * determinant;
         }
-        let inverse = Cholesky::new(left).map(|cholesky| cholesky.inverse());
-        let sigma = |i: usize| {
-            let own = inverse.as_ref().map(|inverse| 0.5 * inverse[(i, i)].sqrt());
-            own.unwrap_or(PRIOR_SIGMA)
+        let found = Found {
+            logarithms,
+            covariance: Cholesky::new(left).map(|cholesky| cholesky.inverse()),
+            value: at.value,
         };
-        Ok(NoiseFit {
-            noise: FittedNoise {
-                factors: factors(logarithms.as_slice(), declared),
-                ..start.clone()
-            },
-            sigmas: (0..all).map(sigma).collect(),
-            log_likelihood: at.value,
-        })
+        let mut value = |moved: &[f64]| {
+            restricted
+                .value::<PlantError>(moved, &mut score)
+                .ok()
+        };
+        Ok(then(&found, &mut value))
     }
 
     fn score(&self, start: &FittedNoise, asked: Asked<'_>) -> Result<NoiseScore, PlantError> {
