@@ -11,7 +11,7 @@ use gyrocal_hypothesis::{
 };
 use gyrocal_record::Manifest;
 use gyrocal_statistics::math::exp;
-use gyrocal_statistics::{NORMAL_97_5, chi_square_tail, p_of_least};
+use gyrocal_statistics::{chi_square_tail, p_of_least};
 
 use crate::description::Kind;
 use crate::error::PlantError;
