@@ -152,11 +152,7 @@ impl NoiseProblem<'_> {
             covariance: Cholesky::new(left).map(|cholesky| cholesky.inverse()),
             value: at.value,
         };
-        let mut value = |moved: &[f64]| {
-            restricted
-                .value::<PlantError>(moved, &mut score)
-                .ok()
-        };
+        let mut value = |moved: &[f64]| restricted.value::<PlantError>(moved, &mut score).ok();
         Ok(then(&found, &mut value))
     }
 

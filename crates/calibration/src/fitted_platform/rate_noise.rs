@@ -129,9 +129,8 @@ impl FittedPlatform<'_> {
         };
         for (index, rate) in walking.into_iter().enumerate() {
             let own = AXES + index;
-            let size = |logarithm: f64| {
-                fit.noise.walk[rate] * (0.5 * (logarithm - logarithms[own])).exp()
-            };
+            let size =
+                |logarithm: f64| fit.noise.walk[rate] * (0.5 * (logarithm - logarithms[own])).exp();
             let [low, high] = maximum.interval(own, &mut |moved| likelihood.value(moved).ok());
             intervals[rate] = high.map(|high| [low.map_or(0.0, size), size(high)]);
         }

@@ -2,6 +2,8 @@
 //! heavy-tailed noise. No deterministic cause is in these records.
 
 use gyrocal_answer::Answer;
+use gyrocal_calibration::NoiseModel;
+use gyrocal_record::AXES;
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::faults::noise::{flickering, student, with_noise};
 use gyrocal_truth::{Hidden, simulate};
@@ -66,6 +68,9 @@ struct Noisy {
     unexplained: bool,
     /// Whether the 95 % interval of each named walk holds its size.
     covered: Vec<bool>,
+    /// Whether the 95 % interval of the noise of each gyro and then of each accelerometer holds its level, of a record
+    /// with white normal noise that is left to the fit whole.
+    levels: Vec<bool>,
 }
 
 impl Noisy {
@@ -102,7 +107,24 @@ pub(crate) fn of_clean(context: &Context) -> Result<Vec<Figure>, Error> {
     let name =
         "clean, noise declared 0.5 to 2 times, AR(1) to 0.3, t₄: physical cause or unexplained";
     let row = Row::bound(name, |one: &Noisy| one.is_named() || one.unexplained);
-    context.measure(&clean, &[row.at_most(0.02, LEVEL_REASON)])
+    let levels = |half: usize| {
+        move |one: &Noisy| {
+            let all = one.levels.iter().copied().enumerate();
+            let own = all.filter(move |(place, _)| place / AXES.len() == half);
+            own.map(|(_, holds)| holds).collect::<Vec<_>>()
+        }
+    };
+    let gyros = Row::each(
+        "clean, white normal noise: coverage of the 95 % interval of a gyro's noise",
+        levels(0),
+    );
+    let accelerometers = Row::each("... of an accelerometer's noise", levels(1));
+    let rows = [
+        row.at_most(0.02, LEVEL_REASON),
+        gyros.between(COVERAGE, COVERAGE_REASON),
+        accelerometers.between(COVERAGE, COVERAGE_REASON),
+    ];
+    context.measure(&clean, &rows)
 }
 
 fn population(noise: Noise, name: &str, seeds: [u64; 3]) -> Population<'static, Noisy> {
@@ -114,7 +136,8 @@ fn record(noise: Noise, seed: u64) -> Result<Noisy, Error> {
     let mut series = Draw::new(seed, SERIES);
     let mut scenario = plain(seed);
     let share = if noise == Noise::Clean { 1.0 } else { 0.5 };
-    misdeclare(&mut scenario, share, &mut random)?;
+    let levels = misdeclare(&mut scenario, share, &mut random)?;
+    let mut is_white = false;
     let mut walks = Vec::new();
     let simulation = match noise {
         Noise::Walks(count) => {
@@ -139,7 +162,10 @@ fn record(noise: Noise, seed: u64) -> Result<Noisy, Error> {
         Noise::Clean if random.uniform() < 0.5 => {
             with_noise(&scenario, |_| student(&mut series, 4) / 2.0_f64.sqrt())?
         }
-        Noise::Clean => simulate(&scenario)?,
+        Noise::Clean => {
+            is_white = true;
+            simulate(&scenario)?
+        }
     };
     let found = diagnosed(&simulation)?.result;
     let causes = surely_not_walks(&found).map(|cause| cause.effect.clone());
@@ -148,7 +174,27 @@ fn record(noise: Noise, seed: u64) -> Result<Noisy, Error> {
         causes: causes.collect(),
         unexplained: found.is_unexplained(),
         covered: covered.collect(),
+        levels: match is_white {
+            true => hold_levels(&found, &levels),
+            false => Vec::new(),
+        },
     })
+}
+
+/// Whether the interval of the noise of each gyro, then of each accelerometer holds its level over the declared.
+fn hold_levels(found: &Answer, truth: &NoiseModel) -> Vec<bool> {
+    let both = [("gyro", truth.gyro_ratio), ("accel", truth.accel_ratio)];
+    let levels = both.into_iter().flat_map(|(instrument, ratios)| {
+        let named = AXES.iter().zip(ratios);
+        named.map(move |(axis, ratio)| (format!("{instrument}_{axis}"), ratio))
+    });
+    levels
+        .filter_map(|(channel, ratio)| {
+            let own = found.noise.iter().find(|one| one.channel == channel)?;
+            let [low, high] = own.interval;
+            Some((low..=high).contains(&ratio))
+        })
+        .collect()
 }
 
 /// Whether the interval of a walk holds its size; `None` unless it is named.
