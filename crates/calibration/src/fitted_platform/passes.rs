@@ -1,7 +1,7 @@
 //! Passes over a record with a fitted model: what signatures, sudden changes and noise would say.
 
 use gyrocal::effect::Need;
-use gyrocal::{Catalogue, EFFECTS, Effect, EstimationError};
+use gyrocal::{Catalogue, EFFECTS, Effect};
 use gyrocal_hypothesis::{Column, ExtraColumns, StateJump};
 use gyrocal_inference::{KeptRecord, NoiseScore, Pass, Reduced, Whitened};
 use nalgebra::{DMatrix, DVector};

@@ -157,7 +157,7 @@ impl NoiseProblem<'_> {
     }
 
     /// The best of several starts.
-    fn from_starts(&self, visible: &FittedNoise) -> Result<NoiseFit, PlantError> {
+    fn best_of_starts(&self, visible: &FittedNoise) -> Result<NoiseFit, PlantError> {
         let first = visible.declared();
         let interval_s = median_interval_s(&self.problem.record.time_s);
         let bounds = self.time_bounds();
@@ -200,7 +200,7 @@ impl FittedPlant {
         let white = self.with_noise_problem(|unknown| {
             let declared = unknown.sizes(&self.noise.loosened(Vec::new()), &[])?;
             let visible = unknown.just_visible(&declared.noise)?;
-            let all = unknown.from_starts(&visible)?;
+            let all = unknown.best_of_starts(&visible)?;
             Ok(is_needed(&all, &declared).then_some(all.noise))
         })?;
         let Some(mut noise) = white else {
