@@ -4,27 +4,11 @@ use gyrocal_estimation::{EstimationError, Innovation, Precision, Recentring};
 use crate::controller_error::ControllerError;
 use crate::filter::PlatformFilter;
 use crate::initial_attitude::InitialAttitude;
+use crate::limits::{Limits, Surprises};
 use crate::saved::{self, SavedForm, SavedNumber};
 use crate::settings::FilterSettings;
 
-/// Limits of what a controller hands to its filter: what is beyond is refused.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Limits<T> {
-    /// Largest reading of an accelerometer, g: beyond its range it says nothing.
-    pub largest_force_g: T,
-    /// Longest interval of a call, s: a longer one is taken for an error of the clock.
-    pub longest_interval_s: T,
-}
-
-impl<T: Precision> Default for Limits<T> {
-    /// 2 g and an hour.
-    fn default() -> Self {
-        Self {
-            largest_force_g: T::from_f64(2.0),
-            longest_interval_s: T::from_f64(3600.0),
-        }
-    }
-}
+mod taking;
 
 /// A streaming filter that a controller can run unattended: it refuses input that has no meaning
 /// and says so, it starts in place and again after an error, and it can be saved and restored.
@@ -35,10 +19,14 @@ impl<T: Precision> Default for Limits<T> {
 /// | [`update`](Self::update) | stands | now | the first sample after a start |
 /// | [`step`](Self::step) | passes | at the end of the interval | every sample after it |
 /// | [`coast`](Self::coast) | passes | none | where a sample is missing or was refused |
+/// | [`reopen`](Self::reopen) | stands | now | after [`ControllerError::Diverged`] |
 /// | [`save`](Self::save), [`restore`](Self::restore) | stands | | around a reset |
 ///
 /// A refused call changes nothing, so time has not passed either: after a refused sample,
-/// [`Self::coast`] over its interval. Nothing here panics or allocates.
+/// [`Self::coast`] over its interval. A sample whose NIS is beyond [`Limits::largest_nis`] is not taken
+/// either, but the filter has coasted to its time: [`ControllerError::SampleSurprising`]. The limit does
+/// not hold while the attitude is so uncertain that no NIS says which sample is sound, as after a start
+/// from a wide prior. Nothing here panics or allocates.
 ///
 /// ```
 /// use gyrocal::{ControllerError, ControllerFilter, FilterSettings, InitialAttitude, Limits, Site};
@@ -63,6 +51,9 @@ impl<T: Precision> Default for Limits<T> {
 pub struct ControllerFilter<T: Precision = f32, F = <T as Precision>::Form> {
     filter: PlatformFilter<T, F>,
     limits: Limits<T>,
+    surprises: Surprises<T>,
+    /// Variance of the attitude at the start, rad², until a sample is taken.
+    at_start: Option<T>,
     running: bool,
 }
 
@@ -70,19 +61,15 @@ impl<T: SavedNumber, F: Form<T> + SavedForm> ControllerFilter<T, F> {
     /// Bytes of a saved state.
     pub const SAVED_BYTES: usize = saved::length(T::BYTES);
 
-    /// The limits of a filter that has not started.
-    const NONE: Limits<T> = Limits {
-        largest_force_g: T::ZERO,
-        longest_interval_s: T::ZERO,
-    };
-
     /// A filter that has not started, for `static` memory: every call but [`Self::start`] is
     /// answered by [`ControllerError::NotRunning`].
     #[must_use]
     pub const fn unset() -> Self {
         Self {
             filter: PlatformFilter::unset(),
-            limits: Self::NONE,
+            limits: Limits::NONE,
+            surprises: Surprises::NONE,
+            at_start: None,
             running: false,
         }
     }
@@ -91,8 +78,8 @@ impl<T: SavedNumber, F: Form<T> + SavedForm> ControllerFilter<T, F> {
     /// before is forgotten.
     ///
     /// # Errors
-    /// [`ControllerError::Settings`], also for a chart that does not move at every step; the filter
-    /// is then not running.
+    /// [`ControllerError::Settings`] for a number without meaning ([`FilterSettings::check`]), and for a
+    /// chart that does not move at every step; the filter is then not running.
     pub fn start(
         &mut self,
         settings: &FilterSettings<T>,
@@ -100,14 +87,17 @@ impl<T: SavedNumber, F: Form<T> + SavedForm> ControllerFilter<T, F> {
         limits: Limits<T>,
     ) -> Result<(), ControllerError> {
         self.running = false;
-        self.limits = Self::NONE;
-        if !(limits.largest_force_g.is_positive() && limits.longest_interval_s.is_positive()) {
+        self.limits = Limits::NONE;
+        self.surprises = Surprises::NONE;
+        if !limits.are_positive() {
             return Err(ControllerError::Settings(
                 EstimationError::InvalidArgument {
                     expected: "positive limits",
                 },
             ));
         }
+        let meaningful = settings.check().and_then(|()| attitude.check());
+        meaningful.map_err(ControllerError::Settings)?;
         if settings.discretisation.recentring != Recentring::EveryStep {
             return Err(ControllerError::Settings(
                 EstimationError::InvalidArgument {
@@ -119,6 +109,7 @@ impl<T: SavedNumber, F: Form<T> + SavedForm> ControllerFilter<T, F> {
             .start(settings, attitude)
             .map_err(ControllerError::Settings)?;
         self.limits = limits;
+        self.at_start = Some(self.filter.attitude_variance());
         self.running = true;
         Ok(())
     }
@@ -139,7 +130,8 @@ impl<T: SavedNumber, F: Form<T> + SavedForm> ControllerFilter<T, F> {
     ///
     /// # Errors
     /// A refusal of the sample or of the interval, and nothing has changed;
-    /// [`ControllerError::NotRunning`]; [`ControllerError::Failed`], and the filter has stopped.
+    /// [`ControllerError::SampleSurprising`] and [`ControllerError::Diverged`], and time has passed
+    /// without the sample; [`ControllerError::NotRunning`]; [`ControllerError::Failed`], and the filter has stopped.
     #[inline]
     pub fn step(
         &mut self,
@@ -150,7 +142,7 @@ impl<T: SavedNumber, F: Form<T> + SavedForm> ControllerFilter<T, F> {
         self.check_sample(specific_force_g)?;
         let result = self.filter.predict(interval_s);
         self.stopped_by(result)?;
-        self.take(specific_force_g)
+        self.take(interval_s, specific_force_g)
     }
 
     /// Takes a sample at the time the filter is at: the first one after a start.
@@ -162,7 +154,7 @@ impl<T: SavedNumber, F: Form<T> + SavedForm> ControllerFilter<T, F> {
         specific_force_g: &[T; 3],
     ) -> Result<Innovation<T, 3>, ControllerError> {
         self.check_sample(specific_force_g)?;
-        self.take(specific_force_g)
+        self.take(T::ZERO, specific_force_g)
     }
 
     /// Time passes without a sample.
@@ -198,6 +190,8 @@ impl<T: SavedNumber, F: Form<T> + SavedForm> ControllerFilter<T, F> {
             return Err(ControllerError::NotRunning);
         }
         saved::restore(&mut self.filter, saved)?;
+        self.at_start = None;
+        self.surprises.end();
         self.running = true;
         Ok(())
     }
@@ -214,30 +208,11 @@ impl<T: SavedNumber, F: Form<T> + SavedForm> ControllerFilter<T, F> {
         &self.filter
     }
 
-    /// One function for all calls, so that a firmware holds the update once.
-    #[inline(never)]
-    fn take(&mut self, specific_force_g: &[T; 3]) -> Result<Innovation<T, 3>, ControllerError> {
-        let result = self.filter.update_at_origin(specific_force_g);
-        self.stopped_by(result)
-    }
-
     /// As [`PlatformFilter::predict`], in one part; for the watch.
     #[cfg(feature = "watch")]
     #[inline]
     pub(crate) fn predict(&mut self, interval_s: T) -> Result<(), ControllerError> {
         let result = self.filter.predict(interval_s);
-        self.stopped_by(result)
-    }
-
-    /// As [`Self::take`], clipped; for the watch.
-    #[cfg(feature = "watch")]
-    #[inline]
-    pub(crate) fn take_clipped(
-        &mut self,
-        specific_force_g: &[T; 3],
-        clip: T,
-    ) -> Result<Innovation<T, 3>, ControllerError> {
-        let result = self.filter.update_clipped(specific_force_g, clip);
         self.stopped_by(result)
     }
 

@@ -10,6 +10,8 @@ use crate::rotation::angles;
 // emit: on
 use crate::settings::FilterSettings;
 
+mod curvature;
+
 /// Most parts that one interval is divided into: years of two-minute steps.
 const MOST_PARTS: f64 = 1e6;
 
@@ -163,26 +165,31 @@ impl<T: Precision, F: Form<T>> PlatformFilter<T, F> {
             .update(specific_force_g, &self.accel_variance_g2)
     }
 
-    /// As [`Self::update`], for a chart that moves at every step.
-    #[inline]
+    /// As [`Self::update`], for a chart that moves at every step, with `noise` added to the variances of
+    /// the sample. One whose NIS exceeds `largest_nis` changes nothing, and takes no longer.
+    #[inline(always)]
     pub(crate) fn update_at_origin(
         &mut self,
         specific_force_g: &[T; 3],
+        noise: T,
+        largest_nis: T,
     ) -> Result<Innovation<T, 3>, EstimationError> {
+        let variance = self.accel_variance_g2.map(|variance| variance + noise);
         self.kernel
-            .update_at_origin(specific_force_g, &self.accel_variance_g2)
+            .update_at_origin(specific_force_g, &variance, largest_nis)
     }
 
-    /// As [`Self::update`], for a chart that moves at every step, with clipped innovations.
+    /// As [`Self::update_at_origin`], with clipped innovations.
     #[cfg(feature = "watch")]
     #[inline]
     pub(crate) fn update_clipped(
         &mut self,
         specific_force_g: &[T; 3],
         clip: T,
+        largest_nis: T,
     ) -> Result<Innovation<T, 3>, EstimationError> {
         self.kernel
-            .update_clipped(specific_force_g, &self.accel_variance_g2, clip)
+            .update_clipped(specific_force_g, &self.accel_variance_g2, clip, largest_nis)
     }
 
     /// Number of parts that [`Self::predict`] divides an interval into.

@@ -1,7 +1,9 @@
+use gyrocal_estimation::EstimationError;
 use gyrocal_scalar::Real;
 
 use crate::anchor::Chart;
 use crate::chart_vectors::ChartInputs;
+use crate::settings::is_sigma;
 
 /// Prior of the platform's attitude at the first sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,6 +43,30 @@ impl<T: Real> InitialAttitude<T> {
             angles_rad: [T::from_f64(0.0); 3],
             sigma_rad: [T::from_f64(0.01_f64.to_radians()); 3],
         }
+    }
+
+    /// Checks that every number has a meaning: that all are finite, and sigmas and their squares positive.
+    ///
+    /// # Errors
+    /// [`EstimationError::InvalidArgument`].
+    pub fn check(&self) -> Result<(), EstimationError> {
+        let finite = |number: &T| number.is_finite();
+        let (all_finite, sigma_rad) = match self {
+            Self::Angles {
+                angles_rad,
+                sigma_rad,
+            } => (angles_rad.iter().all(finite), sigma_rad),
+            Self::Orientation {
+                north_and_up,
+                sigma_rad,
+            } => (north_and_up.as_flattened().iter().all(finite), sigma_rad),
+        };
+        if all_finite && sigma_rad.iter().all(|sigma| is_sigma(*sigma)) {
+            return Ok(());
+        }
+        Err(EstimationError::InvalidArgument {
+            expected: "an attitude that is finite, with sigmas that are positive and finite, as are their squares",
+        })
     }
 
     /// Sets the orientation of a chart, which must be East-North-Up, and returns the platform

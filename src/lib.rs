@@ -81,6 +81,7 @@ mod extension;
 mod filter;
 pub mod generated;
 mod initial_attitude;
+mod limits;
 mod orientation;
 mod regressors;
 mod rotation;
@@ -95,7 +96,7 @@ pub mod trajectory;
 
 pub use anchor::{Anchored, Chart};
 pub use chart_vectors::{ChartInputs, ChartVectors};
-pub use controller::{ControllerFilter, Limits};
+pub use controller::ControllerFilter;
 pub use controller_error::ControllerError;
 pub use extension::{ExtensionFilter, ExtensionKernel};
 pub use filter::{FactorisedPlatformFilter, PlatformFilter};
@@ -107,6 +108,7 @@ pub use gyrocal_estimation::{
 };
 pub use gyrocal_scalar::{self as scalar, Real, Scalar};
 pub use initial_attitude::{ChartAngles, InitialAttitude};
+pub use limits::Limits;
 pub use regressors::Regressors;
 pub use saved::{SavedForm, SavedNumber};
 pub use settings::{Discretisation, FilterSettings};

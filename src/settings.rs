@@ -1,4 +1,4 @@
-use gyrocal_estimation::{Integration, Recentring};
+use gyrocal_estimation::{EstimationError, Integration, Recentring};
 use gyrocal_scalar::Real;
 
 use crate::generated::platform::{Drift, Platform};
@@ -77,10 +77,72 @@ impl<T: Real> FilterSettings<T> {
         }
     }
 
+    /// Checks that every number has a meaning.
+    ///
+    /// # Errors
+    /// [`EstimationError::InvalidArgument`] with the domain of the first one that has none.
+    pub fn check(&self) -> Result<(), EstimationError> {
+        let Site {
+            latitude_rad,
+            earth_rate_rad_per_s,
+            gravity_g,
+        } = self.site;
+        // In single precision a quarter of a turn is rounded up.
+        let quarter = T::from_f64(core::f64::consts::FRAC_PI_2 * (1.0 + 1e-6));
+        let domains = [
+            (latitude_rad.abs() <= quarter, "a latitude within ±90°"),
+            (
+                earth_rate_rad_per_s.is_finite(),
+                "a rate of the Earth that is finite",
+            ),
+            (
+                is_variance(gravity_g),
+                "a gravity that is positive and finite",
+            ),
+            (
+                self.drift
+                    .to_array()
+                    .iter()
+                    .all(|number| number.is_finite()),
+                "coefficients that are finite",
+            ),
+            (
+                self.drift_sigma.to_array().into_iter().all(is_sigma),
+                "sigmas of the coefficients that are positive and finite, as are their squares",
+            ),
+            (
+                is_sigma(self.accel_noise_g) && is_sigma(self.drift_noise_deg_per_h),
+                "noise that is positive and finite, as is its square",
+            ),
+            (
+                self.discretisation.longest_step_s.is_positive(),
+                "a longest step that is positive",
+            ),
+        ];
+        for (holds, expected) in domains {
+            if !holds {
+                return Err(EstimationError::InvalidArgument { expected });
+            }
+        }
+        Ok(())
+    }
+
     /// Spectral density of the drift noise, (deg/h)² s: the square of the declared sigma times the
     /// minute over which it is held.
     #[must_use]
     pub fn drift_noise_density(&self) -> T {
         self.drift_noise_deg_per_h * self.drift_noise_deg_per_h * T::from_f64(HELD_S)
     }
+}
+
+/// Positive and finite. Out of line, as many numbers are checked.
+#[inline(never)]
+fn is_variance<T: Real>(number: T) -> bool {
+    number.is_positive() && number.is_finite()
+}
+
+/// A standard deviation whose variance is neither zero nor infinite in these numbers.
+#[inline(never)]
+pub(crate) fn is_sigma<T: Real>(number: T) -> bool {
+    number.is_positive() && is_variance(number * number)
 }

@@ -17,7 +17,8 @@ fn samples(days: f64) -> Vec<[f64; 3]> {
         duration_s: days * 86_400.0,
         ..Scenario::default()
     };
-    simulate(&scenario).unwrap().record.accel_g
+    // The first one belongs to the start.
+    simulate(&scenario).unwrap().record.accel_g[1..].to_vec()
 }
 
 fn settings<T: SavedNumber>() -> FilterSettings<T> {
@@ -104,7 +105,8 @@ fn every_flipped_bit_of_a_saved_state_is_found() {
 #[test]
 fn refusals_leave_the_filter_as_it_was() {
     let mut filter = started::<f32, Factors>();
-    run(&mut filter, &samples(0.05));
+    let samples = samples(0.1);
+    run(&mut filter, &samples[..72]);
     let before = saved(&filter);
     let good = [0.0, 0.0, 1.0];
     let not_finite = |axis| ControllerError::SampleNotFinite { axis };
@@ -128,7 +130,7 @@ fn refusals_leave_the_filter_as_it_was() {
         assert_eq!(saved(&filter), before);
     }
     filter.coast(60.0).unwrap();
-    filter.step(60.0, &[0.0, 0.0, 1.0]).unwrap();
+    run(&mut filter, &samples[73..]);
     let unlimited = Limits {
         longest_interval_s: f32::INFINITY,
         ..Limits::default()
@@ -138,6 +140,45 @@ fn refusals_leave_the_filter_as_it_was() {
         .unwrap();
     assert_eq!(filter.coast(1e30), Err(ControllerError::IntervalTooLong));
     assert!(filter.is_running());
+}
+
+#[test]
+fn settings_without_meaning_are_refused() {
+    let mut filter = ControllerFilter::<f32>::unset();
+    let aligned = InitialAttitude::aligned();
+    type Change = fn(&mut FilterSettings<f32>);
+    let changes: [(&str, Change); 11] = [
+        ("latitude", |of| of.site.latitude_rad = 1e30),
+        ("latitude", |of| of.site.latitude_rad = f32::NAN),
+        ("latitude", |of| of.site.latitude_rad = -1.6),
+        ("Earth", |of| of.site.earth_rate_rad_per_s = f32::INFINITY),
+        ("gravity", |of| of.site.gravity_g = 0.0),
+        ("coefficients", |of| of.drift.gyro_y_bias = f32::NAN),
+        ("sigmas", |of| of.drift_sigma.gyro_z_bias = f32::INFINITY),
+        ("sigmas", |of| of.drift_sigma.gyro_z_bias = 1e-30),
+        ("noise", |of| of.accel_noise_g = f32::INFINITY),
+        ("noise", |of| of.drift_noise_deg_per_h = -0.002),
+        ("step", |of| of.discretisation.longest_step_s = f32::NAN),
+    ];
+    for (named, change) in changes {
+        let mut bad = settings();
+        change(&mut bad);
+        let error = filter.start(&bad, &aligned, Limits::default()).unwrap_err();
+        assert!(error.to_string().contains(named), "{error}");
+        assert!(!filter.is_running());
+    }
+    for (angle, sigma) in [(f32::NAN, 1e-4), (0.0, 0.0), (0.0, f32::INFINITY)] {
+        let attitude = InitialAttitude::Angles {
+            angles_rad: [0.0, angle, 0.0],
+            sigma_rad: [1e-4, sigma, 1e-4],
+        };
+        let error = filter.start(&settings(), &attitude, Limits::default());
+        assert!(error.unwrap_err().to_string().contains("attitude"));
+    }
+    // The poles have a meaning, rounded up.
+    let mut pole = settings();
+    pole.site.latitude_rad = core::f32::consts::FRAC_PI_2;
+    filter.start(&pole, &aligned, Limits::default()).unwrap();
 }
 
 #[test]
@@ -180,8 +221,8 @@ fn a_filter_that_failed_runs_again_from_a_saved_state() {
 fn single_precision_follows_double() {
     let samples = samples(3.0);
     let (mut single, mut double) = (started::<f32, Factors>(), started::<f64, Covariance>());
-    run(&mut single, &samples[1..]);
-    run(&mut double, &samples[1..]);
+    run(&mut single, &samples);
+    run(&mut double, &samples);
     let (single, double) = (single.filter(), double.filter());
     let numbers = single.drift().to_array().into_iter();
     let others = double.drift().to_array().into_iter();

@@ -1,5 +1,6 @@
 mod onsets;
 mod saving;
+mod surprises;
 
 use gyrocal_estimation::{EstimationError, Factors, Innovation, Precision};
 use gyrocal_watch::{Candidate, Entry, Grid, Step, Watch};
@@ -8,12 +9,13 @@ use super::courses::Courses;
 use super::effects::{EFFECTS_BY_DEFAULT, WatchedEffect, columns};
 use super::linearised::Linearised;
 use super::settings::WatchSettings;
-use crate::controller::{ControllerFilter, Limits};
+use crate::controller::ControllerFilter;
 use crate::controller_error::ControllerError;
 use crate::filter::PlatformFilter;
 use crate::generated::catalogue::RATES;
 use crate::generated::platform::Platform;
 use crate::initial_attitude::InitialAttitude;
+use crate::limits::Limits;
 use crate::saved::SavedNumber;
 use crate::settings::FilterSettings;
 
@@ -69,6 +71,7 @@ pub struct WatchedFilter<T: Precision, const E: usize, const D: usize> {
     /// Time since each walk was last added, s, and the steps until the next.
     walked_s: [T; 3],
     next_walk: u32,
+    alarm: Option<Grid>,
 }
 
 /// A step of a watched filter.
@@ -114,6 +117,7 @@ impl<T: SavedNumber, const E: usize, const D: usize> WatchedFilter<T, E, D> {
             early: [T::ZERO; E],
             walked_s: [T::ZERO; 3],
             next_walk: 0,
+            alarm: None,
         }
     }
 
@@ -140,6 +144,7 @@ impl<T: SavedNumber, const E: usize, const D: usize> WatchedFilter<T, E, D> {
         self.settings = *watch;
         self.walked_s = [T::ZERO; 3];
         self.next_walk = 0;
+        self.alarm = None;
         let mut information = [T::ZERO; E];
         for (place, effect) in information.iter_mut().zip(self.effects) {
             *place = effect.information_of_a_day(settings);
@@ -168,7 +173,8 @@ impl<T: SavedNumber, const E: usize, const D: usize> WatchedFilter<T, E, D> {
     /// Time passes, and at its end a sample is taken, by the filter and by the watch.
     ///
     /// # Errors
-    /// As [`ControllerFilter::step`].
+    /// As [`ControllerFilter::step`]. A sample that is too surprising for the filter is seen by the watch:
+    /// ask [`Self::alarm`].
     #[inline]
     pub fn step(
         &mut self,
@@ -177,10 +183,12 @@ impl<T: SavedNumber, const E: usize, const D: usize> WatchedFilter<T, E, D> {
     ) -> Result<WatchedStep<T>, ControllerError> {
         self.filter.check_interval(interval_s)?;
         self.filter.check_sample(specific_force_g)?;
-        let (innovation, alarm) = self.pass(interval_s, Some(specific_force_g))?;
-        // A sample was taken, so there is an innovation.
-        let innovation = innovation.ok_or(ControllerError::NotRunning)?;
-        Ok(WatchedStep { innovation, alarm })
+        let taken = self.pass(interval_s, Some(specific_force_g))?;
+        let innovation = taken.ok_or_else(|| self.filter.surprised())?;
+        Ok(WatchedStep {
+            innovation,
+            alarm: self.alarm,
+        })
     }
 
     /// Time passes without a sample.
@@ -192,39 +200,47 @@ impl<T: SavedNumber, const E: usize, const D: usize> WatchedFilter<T, E, D> {
         self.pass(interval_s, None).map(|_| ())
     }
 
-    /// An interval, in the parts that the filter divides it into.
+    /// An interval, in the parts that the filter divides it into. The innovation of a sample that was
+    /// taken.
     #[inline(never)]
     fn pass(
         &mut self,
         interval_s: T,
         sample: Option<&[T; 3]>,
-    ) -> Result<(Option<Innovation<T, 3>>, Option<Grid>), ControllerError> {
+    ) -> Result<Option<Innovation<T, 3>>, ControllerError> {
         let parts = self.filter.filter().parts(interval_s);
         let part_s = interval_s / T::from_u32(parts);
         let (mut innovation, mut alarm) = (None, None);
+        let clip = self.settings.clip;
         for part in 1..=parts {
             self.filter.predict(part_s)?;
             self.walk(part_s)?;
             self.linearised.predicted(self.filter.filter());
-            let taken = sample.filter(|_| part == parts);
-            if let Some(sample) = taken {
-                let found = self.filter.take_clipped(sample, self.settings.clip)?;
-                self.linearised.updated(self.filter.filter(), &found);
-                innovation = Some(found);
+            let seen = sample.filter(|_| part == parts);
+            if let Some(sample) = seen {
+                let (found, taken) = self.filter.take_clipped(interval_s, sample, clip)?;
+                if taken {
+                    self.linearised.updated(self.filter.filter(), &found);
+                    innovation = Some(found);
+                } else {
+                    self.linearised
+                        .not_taken(self.filter.filter(), &found, clip);
+                }
             }
             let step = Step {
                 transition: &self.linearised.transition,
-                observed: taken.map(|_| &self.linearised.observed),
+                observed: seen.map(|_| &self.linearised.observed),
                 part: part_s / self.settings.block_s,
             };
-            let whitened = match taken {
+            let whitened = match seen {
                 Some(_) => self.linearised.innovation,
                 None => [T::ZERO; 3],
             };
             alarm = self.watch.step(&step, &whitened).or(alarm);
             self.look_ahead();
         }
-        Ok((innovation, alarm))
+        self.alarm = alarm;
+        Ok(innovation)
     }
 
     /// Adds the walk of one gyro, one after the other, every eighth step: it is slow.

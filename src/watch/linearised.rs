@@ -78,7 +78,7 @@ impl<T: Precision> Linearised<T> {
         );
     }
 
-    /// After the update that followed.
+    /// After the update that followed, or none.
     #[inline]
     pub(crate) fn updated(
         &mut self,
@@ -107,5 +107,18 @@ impl<T: Precision> Linearised<T> {
         }
         self.observed.whitening = whitening;
         self.innovation = innovation.standardised();
+    }
+
+    /// After a sample that was seen but not taken: it corrects nothing, and is clipped in any case.
+    #[cold]
+    pub(crate) fn not_taken(
+        &mut self,
+        filter: &PlatformFilter<T, Factors>,
+        innovation: &Innovation<T, 3>,
+        clip: T,
+    ) {
+        self.updated(filter, innovation);
+        self.innovation = self.innovation.map(|element| element.max(-clip).min(clip));
+        self.observed.gain = [[T::ZERO; N]; 3];
     }
 }

@@ -65,6 +65,43 @@ static int32_t reset(const GyrocalSettings *settings)
     return status == GYROCAL_OK ? gyrocal_restore(&filter, kept, sizeof kept) : status;
 }
 
+/* Settings without meaning are refused, and a wild sample is passed over. */
+static int32_t refusals(const GyrocalSettings *settings)
+{
+    const float nothing = 0.0f, infinite = 1.0f / nothing, no_number = infinite - infinite;
+    GyrocalSettings bad[] = {*settings, *settings, *settings, *settings, *settings, *settings};
+    bad[0].latitude_rad = 1e30f;
+    bad[1].latitude_rad = no_number;
+    bad[2].gravity_g = 0.0f;
+    bad[3].earth_rate_rad_per_s = infinite;
+    bad[4].angles_rad[1] = no_number;
+    bad[5].largest_nis = 0.0f;
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        if (gyrocal_init(&filter, &bad[i]) != GYROCAL_SETTINGS) {
+            return GYROCAL_FAILED;
+        }
+    }
+    const float wild[3] = {0.02f, 0.02f, 0.99f};
+    uint32_t count = 0;
+    int32_t status = gyrocal_init(&filter, settings);
+    if (status == GYROCAL_OK && gyrocal_update(&filter, wild) != GYROCAL_SAMPLE_SURPRISING) {
+        status = GYROCAL_FAILED;
+    }
+    for (int minute = 1; minute <= 60 && status == GYROCAL_OK; minute++) {
+        int32_t expected = minute < 60 ? GYROCAL_SAMPLE_SURPRISING : GYROCAL_DIVERGED;
+        if (gyrocal_step(&filter, INTERVAL_S, wild) != expected) {
+            status = GYROCAL_FAILED;
+        }
+    }
+    if (status == GYROCAL_OK) {
+        status = gyrocal_surprising_samples(&filter, &count);
+    }
+    if (status == GYROCAL_OK && count != 61) {
+        status = GYROCAL_FAILED;
+    }
+    return status == GYROCAL_OK ? gyrocal_reopen(&filter, RECORD_G[60]) : status;
+}
+
 int replay(void)
 {
     GyrocalSettings settings;
@@ -73,6 +110,9 @@ int replay(void)
     int32_t status = gyrocal_default_settings(&settings, (float)(48.2 * RADIANS_PER_DEGREE));
     for (int axis = 0; axis < 3; axis++) {
         settings.angles_rad[axis] = (float)((double)angles_deg[axis] * RADIANS_PER_DEGREE);
+    }
+    if (status == GYROCAL_OK) {
+        status = refusals(&settings);
     }
     if (status == GYROCAL_OK) {
         status = gyrocal_init(&filter, &settings);

@@ -8,9 +8,9 @@ use crate::settings::GyrocalSettings;
 use crate::status::{self, GYROCAL_NOT_RUNNING, GYROCAL_NULL, GYROCAL_OK};
 
 /// Words of 32 bits that a filter takes.
-pub const GYROCAL_FILTER_WORDS: usize = 602;
+pub const GYROCAL_FILTER_WORDS: usize = 656;
 /// Bytes that a filter takes.
-pub const GYROCAL_FILTER_SIZE: usize = 2408;
+pub const GYROCAL_FILTER_SIZE: usize = 2624;
 /// Alignment of a filter in bytes.
 pub const GYROCAL_FILTER_ALIGNMENT: usize = 4;
 /// Bytes of a saved state.
@@ -19,7 +19,7 @@ pub const GYROCAL_SAVED_SIZE: usize = 476;
 /// A filter. Its contents are private; memory of zeros is no filter, and is answered as such.
 #[repr(C)]
 pub struct GyrocalFilter {
-    words: [u32; 602],
+    words: [u32; 656],
 }
 
 /// The contents of the memory.
@@ -148,6 +148,30 @@ unsafe fn with_sample(
     status::of(result)
 }
 
+/// Takes a sample at the time the filter is at, whatever its NIS: after GYROCAL_DIVERGED, with the sample
+/// that was answered so. All sigmas are widened in the same proportion until it is no surprise.
+///
+/// # Safety
+/// As gyrocal_update.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn gyrocal_reopen(filter: *mut GyrocalFilter, sample: *const f32) -> i32 {
+    // SAFETY: as the caller vouches.
+    unsafe { with_sample(filter, sample, |filter, sample| filter.reopen(sample)) }
+}
+
+/// Writes the number of samples since gyrocal_init that were not taken because of their NIS.
+///
+/// # Safety
+/// `filter` must be null or point to a filter, `count` to a number.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn gyrocal_surprising_samples(
+    filter: *const GyrocalFilter,
+    count: *mut u32,
+) -> i32 {
+    // SAFETY: as the caller vouches.
+    unsafe { read(filter, count, |inner| [inner.filter.surprising_samples()]) }
+}
+
 /// Time passes without a sample.
 ///
 /// # Safety
@@ -202,10 +226,10 @@ pub unsafe extern "C" fn gyrocal_nis(filter: *const GyrocalFilter, nis: *mut f32
 /// # Safety
 /// `filter` must be null or point to a filter, `place` to as many numbers as are read.
 #[inline(always)]
-unsafe fn read<const N: usize>(
+unsafe fn read<T, const N: usize>(
     filter: *const GyrocalFilter,
-    place: *mut f32,
-    numbers: impl FnOnce(&Inner) -> [f32; N],
+    place: *mut T,
+    numbers: impl FnOnce(&Inner) -> [T; N],
 ) -> i32 {
     if place.is_null() {
         return GYROCAL_NULL;
@@ -215,7 +239,7 @@ unsafe fn read<const N: usize>(
         Ok(inner) if inner.filter.is_running() => {
             let numbers = numbers(inner);
             // SAFETY: as the caller vouches.
-            unsafe { place.cast::<[f32; N]>().write(numbers) };
+            unsafe { place.cast::<[T; N]>().write(numbers) };
             GYROCAL_OK
         }
         Ok(_) => GYROCAL_NOT_RUNNING,

@@ -5,36 +5,42 @@ use crate::status::{GYROCAL_NULL, GYROCAL_OK};
 /// Number of drift coefficients: bias, g and g² term of gyro x, then of y and z.
 pub const GYROCAL_COEFFICIENTS: usize = 9;
 
-/// Settings of a filter. gyrocal_default_settings fills them.
+/// Settings of a filter. gyrocal_default_settings fills them. gyrocal_init refuses a number outside its
+/// domain, and anything that is no number.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct GyrocalSettings {
-    /// Astronomic latitude, rad, north positive.
+    /// Astronomic latitude, rad, north positive; from -pi/2 to pi/2.
     pub latitude_rad: f32,
-    /// Sidereal rotation rate of the Earth, rad/s.
+    /// Sidereal rotation rate of the Earth, rad/s; finite.
     pub earth_rate_rad_per_s: f32,
-    /// Local gravity in the unit of the samples.
+    /// Local gravity in the unit of the samples; positive, finite.
     pub gravity_g: f32,
-    /// Prior means of the coefficients: deg/h, deg/h/g, deg/h/g².
+    /// Prior means of the coefficients: deg/h, deg/h/g, deg/h/g²; finite.
     pub drift: [f32; 9],
-    /// Their standard deviations.
+    /// Their standard deviations; positive, as is the square.
     pub drift_sigma: [f32; 9],
-    /// Platform angles against East, North, Up at the first sample, about x, then y, then z, rad.
+    /// Platform angles against East, North, Up at the first sample, about x, then y, then z, rad;
+    /// finite.
     pub angles_rad: [f32; 3],
-    /// Their standard deviations, rad.
+    /// Their standard deviations, rad; positive, as is the square.
     pub angles_sigma_rad: [f32; 3],
-    /// Standard deviation of one sample, g.
+    /// Standard deviation of one sample, g; positive, as is the square.
     pub accel_noise_g: f32,
-    /// Standard deviation of the white drift noise held over one minute, deg/h.
+    /// Standard deviation of the white drift noise held over one minute, deg/h; positive,
+    /// as is the square.
     pub drift_noise_deg_per_h: f32,
-    /// Longest interval that is integrated in one step, s; longer ones are divided.
+    /// Longest interval that is integrated in one step, s; longer ones are divided. Positive; may be
+    /// infinite.
     pub longest_step_s: f32,
     /// Explicit Euler instead of Runge-Kutta if not 0.
     pub euler: u32,
-    /// Largest reading of an accelerometer, g.
+    /// Largest reading of an accelerometer, g; positive, may be infinite.
     pub largest_force_g: f32,
-    /// Longest interval of a call, s.
+    /// Longest interval of a call, s; positive, may be infinite.
     pub longest_interval_s: f32,
+    /// Largest normalised innovation squared of a sample that is taken; positive, and infinite to take all.
+    pub largest_nis: f32,
 }
 
 impl GyrocalSettings {
@@ -72,13 +78,15 @@ impl GyrocalSettings {
         Limits {
             largest_force_g: self.largest_force_g,
             longest_interval_s: self.longest_interval_s,
+            largest_nis: self.largest_nis,
         }
     }
 }
 
 /// Fills the settings of a platform that is aligned with East, North, Up to 0.01 deg at a latitude
 /// in rad: coefficients of zero known to 1 deg/h (per g, per g²), noise of 1e-5 g and 0.002 deg/h,
-/// samples to 2 g, intervals to an hour.
+/// samples to 2 g, intervals to an hour, a NIS to 34.08: a sound record exceeds it once in ten years at
+/// one sample a minute.
 ///
 /// # Safety
 /// `settings` must be null or point to settings.
@@ -110,6 +118,7 @@ pub unsafe extern "C" fn gyrocal_default_settings(
         euler: 0,
         largest_force_g: limits.largest_force_g,
         longest_interval_s: limits.longest_interval_s,
+        largest_nis: limits.largest_nis,
     };
     // SAFETY: not null, and the caller vouches for the rest.
     unsafe { settings.write(defaults) };

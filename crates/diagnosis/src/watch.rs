@@ -70,7 +70,7 @@ impl WatchResult {
 pub struct WatchReplay {
     /// Rows of the record.
     pub rows: usize,
-    /// Rows that were refused: a component is missing or out of range.
+    /// Rows that were not taken: a component is missing or out of range, or the NIS is too large.
     pub refused_rows: usize,
     /// Probability of a false alarm in a year.
     pub false_alarms_per_year: f64,
@@ -213,6 +213,16 @@ impl<'a, T: SavedNumber> Replay<'a, T> {
             let interval_s = T::from_f64(record.time_s[row] - record.time_s[row - 1]);
             let alarm = match self.watched.step(interval_s, &sample) {
                 Ok(step) => step.alarm,
+                Err(error) if error.has_coasted() => {
+                    self.answer.refused_rows += 1;
+                    let alarm = self.watched.alarm();
+                    if alarm.is_none() && error == ControllerError::Diverged {
+                        self.watched
+                            .reopen(&sample)
+                            .map_err(|error| stopped(record, row, error))?;
+                    }
+                    alarm
+                }
                 Err(error) if is_refusal(error) => {
                     self.answer.refused_rows += 1;
                     self.watched
@@ -363,7 +373,9 @@ fn attitude_in_numbers<T: Real>(attitude: &InitialAttitude<f64>) -> InitialAttit
 fn is_refusal(error: ControllerError) -> bool {
     matches!(
         error,
-        ControllerError::SampleNotFinite { .. } | ControllerError::SampleOutOfRange { .. }
+        ControllerError::SampleNotFinite { .. }
+            | ControllerError::SampleOutOfRange { .. }
+            | ControllerError::SampleSurprising
     )
 }
 

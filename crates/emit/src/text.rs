@@ -172,6 +172,9 @@ const NOMINAL_TESTS: &str = "
         assert_eq!(refused, Err(ControllerError::SampleNotFinite { axis: 0 }));
         let refused = filter.step(0.0, &SAMPLES[1]);
         assert_eq!(refused, Err(ControllerError::IntervalNotPositive));
+        let [x, y, z] = SAMPLES[1];
+        let refused = filter.step(INTERVAL_S, &[x + 0.1, y, z]);
+        assert_eq!(refused, Err(ControllerError::SampleSurprising));
     }
 }
 ";

@@ -122,6 +122,13 @@ impl<T: Real> Form<T> for Covariance {
         }
     }
 
+    #[inline]
+    fn widen(numbers: &mut Numbers<'_, T>, factor: T) {
+        for element in numbers.matrix.iter_mut() {
+            *element = *element * factor;
+        }
+    }
+
     #[inline(always)]
     fn innovation<const M: usize, const Y: usize>(
         numbers: &mut Numbers<'_, T>,
@@ -150,6 +157,9 @@ impl<T: Real> Form<T> for Covariance {
         projection.check()?;
         let innovation = projection.innovation();
         innovation.check()?;
+        if observation.is_refused(innovation.nis) {
+            return Ok(innovation);
+        }
         let mut head = projection.moving;
         projection.reduce(&mut head);
         let mut correction = [T::from_f64(0.0); M];

@@ -105,6 +105,13 @@ impl<T: Real> Form<T> for Factors {
         diffuse::diffuse(matrix, pivots, rest, direction, variance);
     }
 
+    #[inline]
+    fn widen(numbers: &mut Numbers<'_, T>, factor: T) {
+        for pivot in numbers.pivots.iter_mut() {
+            *pivot = *pivot * factor;
+        }
+    }
+
     #[inline(always)]
     fn innovation<const M: usize, const Y: usize>(
         numbers: &mut Numbers<'_, T>,

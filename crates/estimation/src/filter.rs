@@ -18,6 +18,7 @@ macro_rules! numbers {
             gain: $buffers.gain,
             sweep: $buffers.sweep,
             cross: $buffers.cross,
+            kept: $buffers.kept,
         }
     };
 }

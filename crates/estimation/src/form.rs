@@ -62,9 +62,13 @@ pub trait Form<T: Real> {
     /// P ← P + `variance` d dᵀ: the state has moved by itself, along a direction d.
     fn diffuse(numbers: &mut Numbers<'_, T>, direction: &[T], variance: T);
 
+    /// P ← `factor` P.
+    fn widen(numbers: &mut Numbers<'_, T>, factor: T);
+
     /// P ← (I - K H) P, and the correction of the state: parameters are corrected in place;
     /// `correct` is called with the moving states' correction as soon as it is known, so that
-    /// what depends on it need not wait for P.
+    /// what depends on it need not wait for P. Neither where the NIS is beyond the largest one of the
+    /// observation: nothing has changed then.
     ///
     /// # Errors
     /// [`EstimationError::NotPositiveDefinite`], [`EstimationError::LostPrecision`] or
@@ -134,6 +138,8 @@ pub struct Numbers<'a, T> {
     pub sweep: &'a mut [T],
     /// Workspace of a prediction; M × n.
     pub cross: &'a mut [T],
+    /// What an update that may turn out unwanted puts back: M × n, and n.
+    pub kept: [&'a mut [T]; 2],
 }
 
 /// A step of the state, linearised.
@@ -168,4 +174,15 @@ pub struct Observation<'a, T, const M: usize, const Y: usize> {
     /// Largest standardised innovation that the correction takes: beyond it it takes this one, with
     /// its sign, if the state is at least as certain as the sample. `None`: all as they are.
     pub clip: Option<T>,
+    /// Largest NIS that is used: beyond it an update changes nothing but workspace. `None`: any.
+    pub largest_nis: Option<T>,
+}
+
+impl<T: Real, const M: usize, const Y: usize> Observation<'_, T, M, Y> {
+    /// True if the NIS is so large that the observation is not to be used.
+    #[inline(always)]
+    pub(crate) fn is_refused(&self, nis: T) -> bool {
+        self.largest_nis
+            .is_some_and(|largest_nis| nis > largest_nis || largest_nis.is_nan())
+    }
 }

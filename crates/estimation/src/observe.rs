@@ -57,6 +57,7 @@ impl<D, I: Copy> Sensor<'_, D, I> {
             residual,
             observed,
             clip: None,
+            largest_nis: None,
         }
     }
 }

@@ -29,6 +29,8 @@ pub struct Buffers<'a, T> {
     pub sweep: &'a mut [T],
     /// Workspace of a prediction; M × n.
     pub cross: &'a mut [T],
+    /// What an update that may turn out unwanted puts back: moving rows of U by columns, M × n, and D.
+    pub kept: [&'a mut [T]; 2],
 }
 
 /// Numbers of a filter that persist between steps.
@@ -72,6 +74,8 @@ pub struct ArrayStorage<T, const M: usize, const Y: usize, const N: usize> {
     gain: [[T; N]; Y],
     sweep: [[[T; Y]; N]; 2],
     cross: [[T; N]; M],
+    kept: [[T; N]; M],
+    kept_pivots: [T; N],
 }
 
 impl<T: Real, const M: usize, const Y: usize, const N: usize> ArrayStorage<T, M, Y, N> {
@@ -96,6 +100,8 @@ impl<T: Real, const M: usize, const Y: usize, const N: usize> ArrayStorage<T, M,
             gain: [[zero; N]; Y],
             sweep: [[[zero; Y]; N]; 2],
             cross: [[zero; N]; M],
+            kept: [[zero; N]; M],
+            kept_pivots: [zero; N],
         }
     }
 }
@@ -125,6 +131,7 @@ impl<T, const M: usize, const Y: usize, const N: usize> Storage<T> for ArrayStor
             gain: self.gain.as_flattened_mut(),
             sweep: self.sweep.as_flattened_mut().as_flattened_mut(),
             cross: self.cross.as_flattened_mut(),
+            kept: [self.kept.as_flattened_mut(), &mut self.kept_pivots],
         }
     }
 
@@ -146,7 +153,7 @@ impl<T, const M: usize, const Y: usize, const N: usize> Storage<T> for ArrayStor
 #[derive(Clone, Debug)]
 pub struct VecStorage<T> {
     states: usize,
-    numbers: [alloc::vec::Vec<T>; 10],
+    numbers: [alloc::vec::Vec<T>; 12],
 }
 
 #[cfg(feature = "alloc")]
@@ -165,6 +172,8 @@ impl<T: Copy + Default> VecStorage<T> {
             outputs * states,
             2 * outputs * states,
             moving * states,
+            moving * states,
+            states,
         ];
         Self {
             states,
@@ -191,6 +200,8 @@ impl<T> Storage<T> for VecStorage<T> {
             gain,
             sweep,
             cross,
+            kept,
+            kept_pivots,
         ] = self.numbers.each_mut();
         Buffers {
             state,
@@ -203,6 +214,7 @@ impl<T> Storage<T> for VecStorage<T> {
             gain,
             sweep,
             cross,
+            kept: [kept, kept_pivots],
         }
     }
 
@@ -216,6 +228,8 @@ impl<T> Storage<T> for VecStorage<T> {
             _,
             _,
             gain,
+            _,
+            _,
             _,
             _,
         ] = self.numbers.each_ref();

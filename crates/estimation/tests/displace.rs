@@ -107,18 +107,36 @@ fn outliers_are_clipped<F: Form<f64>>() {
     // A filter whose chart moves takes the outputs at the origin.
     let (sigma, predicted) = {
         let mut filter = started::<F>();
-        let innovation = filter.update_clipped(&[0.5], &[NOISE], 3.0).unwrap();
+        let innovation = filter
+            .update_clipped(&[0.5], &[NOISE], 3.0, f64::INFINITY)
+            .unwrap();
         let residual = innovation.residual[0];
         (residual / innovation.standardised()[0], 0.5 - residual)
     };
     let after = |measured: f64, clip: Option<f64>| {
         let mut filter = started::<F>();
         let innovation = match clip {
-            Some(clip) => filter.update_clipped(&[measured], &[NOISE], clip).unwrap(),
-            None => filter.update_at_origin(&[measured], &[NOISE]).unwrap(),
+            Some(clip) => filter
+                .update_clipped(&[measured], &[NOISE], clip, f64::INFINITY)
+                .unwrap(),
+            None => filter
+                .update_at_origin(&[measured], &[NOISE], f64::INFINITY)
+                .unwrap(),
         };
         (filter.state().to_vec(), innovation)
     };
+    // Beyond the largest NIS nothing changes, not a bit.
+    let mut filter = started::<F>();
+    let before = filter.view();
+    let before = [before.state, before.matrix, before.pivots].map(<[f64]>::to_vec);
+    for (measured, largest_nis) in [(predicted + 20.0 * sigma, 34.0), (predicted, -1.0)] {
+        let innovation = filter
+            .update_at_origin(&[measured], &[NOISE], largest_nis)
+            .unwrap();
+        assert!(innovation.nis > largest_nis);
+        let view = filter.view();
+        assert_eq!([view.state, view.matrix, view.pivots], before);
+    }
     // Inside of the clip nothing changes, not a bit.
     let inside = predicted + 2.9 * sigma;
     assert_eq!(after(inside, Some(3.0)).0, after(inside, None).0);

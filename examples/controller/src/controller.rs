@@ -69,6 +69,14 @@ impl Controller {
                 self.sample_g = *sample_g;
                 None
             }
+            // The filter has coasted over a sample that disagrees with its state; after an hour of them
+            // it is the state that is wrong.
+            Err(error) if error.has_coasted() => {
+                if error == ControllerError::Diverged {
+                    self.filter.reopen(sample_g)?;
+                }
+                Some(error)
+            }
             // The sample has no meaning, and the minute has passed all the same.
             Err(error) if error.is_refusal() => {
                 self.filter.coast(INTERVAL_S)?;

@@ -7,7 +7,7 @@ use crate::record::{INTERVAL_S, Number, Record};
 use crate::replay::{Digest, attitude, settings};
 
 /// Names of the cases, in the order of [`answers`].
-pub const CASES: [&str; 16] = [
+pub const CASES: [&str; 18] = [
     "sample_nan",
     "sample_infinite",
     "sample_out_of_range",
@@ -24,6 +24,8 @@ pub const CASES: [&str; 16] = [
     "saved_not_positive_definite",
     "failure_stops",
     "restore_continues",
+    "sample_surprising",
+    "settings_without_gravity",
 ];
 
 /// Whether each case was answered as documented.
@@ -64,12 +66,14 @@ pub fn answers(filter: &mut Filter) -> [bool; CASES.len()] {
         of_interval(1e9, ControllerError::IntervalTooLong),
         of_interval(infinite, ControllerError::IntervalTooLong),
     ];
+    let surprising = [surprising(filter), without_gravity(filter)];
     let saved = saved_states(filter);
     let failure = failures(filter);
     let mut all = [before_start; CASES.len()];
     let others = [before_start, without_noise];
     let in_order = samples.iter().chain(&intervals).chain(&others);
-    for (place, answer) in all.iter_mut().zip(in_order.chain(&saved).chain(&failure)) {
+    let in_order = in_order.chain(&saved).chain(&failure).chain(&surprising);
+    for (place, answer) in all.iter_mut().zip(in_order) {
         *place = *answer;
     }
     all
@@ -79,6 +83,36 @@ fn digest(filter: &Filter) -> u64 {
     let mut digest = Digest::default();
     filter.numbers(&mut |number| digest.add(number));
     digest.0
+}
+
+/// A sample in range that disagrees with the state: it is not taken, and time passes as by coasting.
+fn surprising(filter: &mut Filter) -> bool {
+    let mut saved = [0; Filter::SAVED_BYTES];
+    if filter.save(&mut saved).is_err() {
+        return false;
+    }
+    let [x, y, z] = Record.sample(0);
+    let answer = filter.step(INTERVAL_S, &[x + 0.02, y, z]);
+    let passed = digest(filter);
+    answer == Err(ControllerError::SampleSurprising)
+        && filter.restore(&saved).is_ok()
+        && filter.coast(INTERVAL_S).is_ok()
+        && digest(filter) == passed
+        && filter.restore(&saved).is_ok()
+}
+
+/// A gravity of zero is refused at the start; the filter is then as it was.
+fn without_gravity(filter: &mut Filter) -> bool {
+    let mut saved = [0; Filter::SAVED_BYTES];
+    let kept = filter.save(&mut saved).is_ok();
+    let mut bad = settings(Integration::RK4);
+    bad.site.gravity_g = 0.0;
+    let refused = matches!(
+        filter.start(&bad, &attitude()),
+        Err(ControllerError::Settings(_))
+    );
+    let started = filter.start(&settings(Integration::RK4), &attitude());
+    kept && refused && started.is_ok() && filter.restore(&saved).is_ok()
 }
 
 fn saved_states(filter: &mut Filter) -> [bool; 4] {

@@ -2,6 +2,7 @@
 
 use gyrocal_scalar::Real;
 
+use super::innovation::innovation;
 use crate::error::EstimationError;
 use crate::form::{Numbers, Observation};
 use crate::innovation::Innovation;
@@ -24,11 +25,22 @@ pub(super) fn update<T: Real, const M: usize, const Y: usize>(
         pivots,
         gain,
         sweep,
+        kept,
         ..
     } = numbers;
     let output = observation.parameters;
     let n = pivots.len();
     let q = output.len() / Y;
+    if observation.largest_nis.is_some() {
+        if q > 0 {
+            // Rows of parameters change too, which are not kept.
+            let innovation = innovation(factor, pivots, observation, gain)?;
+            if observation.is_refused(innovation.nis) {
+                return Ok(innovation);
+            }
+        }
+        keep::<T, M>(factor, pivots, kept);
+    }
     let (v, rest) = sweep.as_chunks_mut::<Y>().0.split_at_mut(n);
     let mut sweep = Sweep {
         v,
@@ -36,9 +48,14 @@ pub(super) fn update<T: Real, const M: usize, const Y: usize>(
     };
     let head = sweep_head(factor, pivots, observation, gain, &mut sweep);
     let innovation = head.innovation(observation, gain, n)?;
+    if observation.is_refused(innovation.nis) {
+        put_back::<T, M>(factor, pivots, kept);
+        return Ok(innovation);
+    }
     if !head.positive {
         // Underflow: nothing else makes a positive pivot vanish.
-        let state = (0..n).find(|j| !pivots[*j].is_positive()).unwrap_or(0);
+        let state = pivots.iter().position(|pivot| !pivot.is_positive());
+        let state = state.unwrap_or(0);
         return Err(EstimationError::NotPositiveDefinite { state });
     }
     let mut correction = [T::from_f64(0.0); M];
@@ -61,6 +78,34 @@ pub(super) fn update<T: Real, const M: usize, const Y: usize>(
         row += 1;
     }
     Ok(innovation)
+}
+
+/// Keeps what the sweep over the moving rows changes.
+#[inline(always)]
+fn keep<T: Real, const M: usize>(factor: &[T], pivots: &[T], [rows, diagonal]: &mut [&mut [T]; 2]) {
+    let columns = factor.chunks_exact(pivots.len().max(1));
+    for (place, column) in rows.chunks_exact_mut(M).zip(columns) {
+        store(place, 0, load::<T, M>(column, 0));
+    }
+    diagonal.copy_from_slice(pivots);
+}
+
+#[cold]
+#[inline(never)]
+fn put_back<T: Real, const M: usize>(
+    factor: &mut [T],
+    pivots: &mut [T],
+    [rows, diagonal]: &[&mut [T]; 2],
+) {
+    let columns = factor.chunks_exact_mut(pivots.len().max(1));
+    for (column, kept) in columns.zip(rows.chunks_exact(M)) {
+        for (place, element) in column.iter_mut().zip(kept) {
+            *place = *element;
+        }
+    }
+    for (place, element) in pivots.iter_mut().zip(diagonal.iter()) {
+        *place = *element;
+    }
 }
 
 /// Coefficients of the sweep for each column of U and each output.

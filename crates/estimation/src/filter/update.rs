@@ -30,14 +30,15 @@ where
         noise_variance: &[T; Y],
     ) -> Result<Innovation<T, Y>, EstimationError> {
         if self.at_origin() {
-            self.update_with::<true>(measured, noise_variance, None)
+            self.update_with::<true>(measured, noise_variance, None, None)
         } else {
             self.update_elsewhere(measured, noise_variance)
         }
     }
 
     /// As [`Self::update`], for a filter whose chart moves at every step: a program that calls only
-    /// this one does without the code for other charts.
+    /// this one does without the code for other charts. A measurement whose NIS exceeds `largest_nis`
+    /// changes nothing, and takes no longer; a negative limit asks for the innovation alone.
     ///
     /// # Errors
     /// As [`Self::update`]; [`EstimationError::InvalidArgument`] for a filter with another chart.
@@ -46,13 +47,14 @@ where
         &mut self,
         measured: &[T; Y],
         noise_variance: &[T; Y],
+        largest_nis: T,
     ) -> Result<Innovation<T, Y>, EstimationError> {
         if !self.at_origin() {
             return Err(EstimationError::InvalidArgument {
                 expected: "a chart that moves at every step",
             });
         }
-        self.update_with::<true>(measured, noise_variance, None)
+        self.update_with::<true>(measured, noise_variance, None, Some(largest_nis))
     }
 
     /// As [`Self::update_at_origin`], but the correction takes standardised innovations up to `clip`
@@ -68,13 +70,14 @@ where
         measured: &[T; Y],
         noise_variance: &[T; Y],
         clip: T,
+        largest_nis: T,
     ) -> Result<Innovation<T, Y>, EstimationError> {
         if !self.at_origin() {
             return Err(EstimationError::InvalidArgument {
                 expected: "a chart that moves at every step",
             });
         }
-        self.update_with::<true>(measured, noise_variance, Some(clip))
+        self.update_with::<true>(measured, noise_variance, Some(clip), Some(largest_nis))
     }
 
     /// The state has moved along a direction, by a size of which an estimate and its variance are
@@ -132,7 +135,7 @@ where
         measured: &[T; Y],
         noise_variance: &[T; Y],
     ) -> Result<Innovation<T, Y>, EstimationError> {
-        self.update_with::<false>(measured, noise_variance, None)
+        self.update_with::<false>(measured, noise_variance, None, None)
     }
 
     #[inline(always)]
@@ -141,6 +144,7 @@ where
         measured: &[T; Y],
         noise_variance: &[T; Y],
         clip: Option<T>,
+        largest_nis: Option<T>,
     ) -> Result<Innovation<T, Y>, EstimationError> {
         check_noise(noise_variance)?;
         let buffers = self.storage.buffers();
@@ -153,6 +157,7 @@ where
         };
         let observation = Observation {
             clip,
+            largest_nis,
             ..sensor.observe(
                 &moving,
                 parameters,
@@ -177,8 +182,12 @@ where
                 gain: buffers.gain,
                 sweep: buffers.sweep,
                 cross: none,
+                kept: buffers.kept,
             };
             let innovation = F::update(&mut numbers, cross, &observation, &known, correct)?;
+            if observation.is_refused(innovation.nis) {
+                return Ok(innovation);
+            }
             let remainder = buffers.remainder.iter_mut().skip(M);
             for ((number, left), change) in parameters.iter_mut().zip(remainder).zip(cross) {
                 let change = *left + *change;
@@ -233,6 +242,22 @@ where
         }
         self.update(measured, noise_variance)
             .map(|innovation| (innovation, true))
+    }
+
+    /// P ← `factor` P: every error is as much more uncertain, with the correlations that it has.
+    ///
+    /// # Errors
+    /// [`EstimationError::InvalidArgument`] if the factor is not positive and finite;
+    /// nothing has changed.
+    pub fn widen(&mut self, factor: T) -> Result<(), EstimationError> {
+        if !(factor.is_positive() && factor.is_finite()) {
+            return Err(EstimationError::InvalidArgument {
+                expected: "a positive factor",
+            });
+        }
+        let buffers = self.storage.buffers();
+        F::widen(&mut numbers!(buffers), factor);
+        Ok(())
     }
 }
 

@@ -19,7 +19,7 @@ const SPREAD: f64 = 2.0;
 
 /// Bytes that the firmware prints, by the beginning of their line, with their limits.
 const BYTES: [(&str, &str, Option<f64>); 8] = [
-    ("f32: filter state", "size filter", Some(2400.0)),
+    ("f32: filter state", "size filter", Some(2700.0)),
     ("f32 rk4: stack of a step", STACK_OF_A_STEP, Some(1300.0)),
     (
         "f32: stack of construction",
