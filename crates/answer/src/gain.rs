@@ -38,8 +38,8 @@ pub enum Prediction {
 }
 
 /// Root mean square of measured less simulated specific force, the simulation running from the
-/// first attitude without measurement updates \[g\]. Values that the noise audit left out do not
-/// count.
+/// first attitude without measurement updates \[g\]: root of the mean of the mean squares of the
+/// axes. Values that the noise audit left out do not count.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FreeRun {

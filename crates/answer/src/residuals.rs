@@ -14,7 +14,8 @@ pub struct Residuals {
     /// The largest line of each axis x, y, z.
     pub lines: Option<[Line; 3]>,
     /// Root mean square of measured less simulated specific force of x, y, z, the simulation
-    /// running from the first attitude without measurement updates \[g\].
+    /// running from the first attitude without measurement updates \[g\]. Values that the noise audit
+    /// left out do not count.
     pub free_run_rms_g: [f64; 3],
     /// Means of normalised innovations in bins of equal numbers of rows.
     pub against: Vec<Against>,
@@ -24,9 +25,13 @@ pub struct Residuals {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Nis {
-    /// Their mean over the rows; the number of values of a row is expected of a consistent filter, 3
-    /// if none is missing.
+    /// Their sum over `rows`; `values` over `rows` is expected of a consistent filter, 3 if none is
+    /// missing.
     pub mean: f64,
+    /// Rows with a value.
+    pub rows: usize,
+    /// Their values, at most three a row.
+    pub values: usize,
     /// The 99.9 % interval of the mean for a record that fits the model, as in a calibration.
     pub band: [f64; 2],
     /// Two-sided p-value of the mean.

@@ -81,6 +81,7 @@ mod gate;
 mod magnitude;
 mod magnitude_test;
 mod noise;
+mod open_loop;
 mod plot_data;
 mod power;
 mod request;
@@ -111,7 +112,8 @@ pub use noise::{
     AuditOptions, Cleaned, DeclaredNoise, Estimate, NoiseAudit, NoiseFinding, Outlier, Shares,
     audit_noise,
 };
-pub use plot_data::{ChannelCorrelation, ChannelSpectrum, ModelVersion, OpenLoopSimulation};
+pub use open_loop::OpenLoopSimulation;
+pub use plot_data::{ChannelCorrelation, ChannelSpectrum, ModelVersion};
 pub use request::{missing_input, selection};
 
 pub use series::Innovations;

@@ -1,9 +1,7 @@
-//! Series behind the charts of a diagnosis: open-loop simulations, spectra and autocorrelations of
-//! the innovations.
+//! Series behind the charts of a diagnosis: spectra and autocorrelations of the innovations.
 
-use gyrocal_calibration::{CalibrationError, FittedPlatform};
 use gyrocal_record::Record;
-use gyrocal_statistics::{NORMAL_97_5, Periodogram, autocorrelation, periodogram, rms_of_present};
+use gyrocal_statistics::{NORMAL_97_5, Periodogram, autocorrelation, periodogram};
 
 use crate::diagnose::Diagnosis;
 use crate::error::DiagnosisError;
@@ -15,37 +13,6 @@ pub enum ModelVersion {
     Nominal,
     /// The extended model.
     Extended,
-}
-
-/// A simulation from the first row on, without measurement updates.
-#[derive(Clone, Debug, PartialEq)]
-pub struct OpenLoopSimulation {
-    /// Specific force of the model at each row, g.
-    pub simulated_g: Vec<[f64; 3]>,
-    /// Measured minus simulated specific force of each axis, g.
-    pub residuals_g: [Vec<f64>; 3],
-    /// Root mean square of all residuals, g.
-    pub rms_g: f64,
-}
-
-impl OpenLoopSimulation {
-    /// Simulates a fitted model over its record.
-    ///
-    /// # Errors
-    /// As [`FittedPlatform::free_run_g`].
-    pub fn new(fitted: &FittedPlatform<'_>, record: &Record) -> Result<Self, CalibrationError> {
-        let simulated_g = fitted.free_run_g()?;
-        let residuals_g: [Vec<f64>; 3] = core::array::from_fn(|axis| {
-            let rows = record.accel_g.iter().zip(&simulated_g);
-            rows.map(|(measured, simulated)| measured[axis] - simulated[axis])
-                .collect()
-        });
-        Ok(Self {
-            rms_g: rms_of_present(residuals_g.iter().flatten()).0,
-            simulated_g,
-            residuals_g,
-        })
-    }
 }
 
 /// Periodogram of the innovations of one axis.

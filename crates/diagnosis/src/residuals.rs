@@ -5,9 +5,10 @@
 use gyrocal_calibration::{FittedPlatform, NIS_FALSE_ALARM};
 use gyrocal_record::Record;
 use gyrocal_statistics::{
-    SpectralLine, StatisticsError, autocorrelation, binned_means, nis, periodogram, rms_of_present,
+    SpectralLine, StatisticsError, autocorrelation, binned_means, nis, periodogram,
 };
 
+use crate::open_loop::OpenLoopSimulation;
 use crate::series::Innovations;
 use gyrocal_answer::{Against, Autocorrelation, Line, Nis, Residuals};
 
@@ -20,14 +21,14 @@ const BINS: usize = 12;
 /// Statistics of the innovations of the nominal model, and the error of its open-loop simulation.
 ///
 /// # Errors
-/// As [`FittedPlatform::free_run_g`].
+/// As [`OpenLoopSimulation::new`].
 pub(crate) fn residuals(
     nominal: &FittedPlatform<'_>,
     innovations: &Innovations,
     record: &Record,
     false_alarm: f64,
 ) -> Result<Residuals, gyrocal_calibration::CalibrationError> {
-    let simulated_g = nominal.free_run_g()?;
+    let simulated = OpenLoopSimulation::new(nominal, record)?;
     let normalised = &innovations.normalised;
     let channel = |axis: usize| normalised.iter().map(|row| row[axis]).collect::<Vec<f64>>();
     let channels = core::array::from_fn(channel);
@@ -62,10 +63,7 @@ pub(crate) fn residuals(
                 correlation: found.correlation,
             }),
         lines: all(lines.map(|found| found.map(|found| found.line))),
-        free_run_rms_g: core::array::from_fn(|axis| {
-            let misses = record.accel_g.iter().zip(&simulated_g);
-            rms_of_present(misses.map(|(measured, simulated)| measured[axis] - simulated[axis])).0
-        }),
+        free_run_rms_g: simulated.axis_rms_g,
         against,
     })
 }
@@ -78,6 +76,8 @@ fn nis_of_rows(normalised: &[[f64; 3]]) -> Option<Nis> {
     let values_of_a_row = found.values as f64 / rows as f64;
     Some(Nis {
         mean: found.mean * values_of_a_row,
+        rows,
+        values: found.values,
         band: found.band.map(|bound| bound * values_of_a_row),
         p_value: found.p_value,
     })

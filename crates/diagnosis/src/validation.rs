@@ -9,12 +9,12 @@ mod later_record;
 use gyrocal::generated::platform::DRIFT;
 use gyrocal_calibration::{CalibrationError, FittedPlatform, NoiseModel};
 use gyrocal_record::Record;
-use gyrocal_statistics::rms_of_present;
 
 pub(crate) use cross_validation::{CrossValidated, KeepDecision, cross_validate};
 pub(crate) use later_record::predict;
 pub use later_record::{AttitudeErrors, LaterPrediction};
 
+use crate::open_loop::OpenLoopSimulation;
 use gyrocal_answer::{CoefficientShift, FreeRun, Gain, Prediction};
 
 /// Gain of the second model over the first, the nominal one, on the record both were fitted to with
@@ -22,7 +22,7 @@ use gyrocal_answer::{CoefficientShift, FreeRun, Gain, Prediction};
 /// with each, and `effects` the causes that the second has.
 ///
 /// # Errors
-/// As [`FittedPlatform::free_run_g`].
+/// As [`OpenLoopSimulation::new`].
 pub(crate) fn gain(
     [nominal, extended]: [&FittedPlatform<'_>; 2],
     ([before, after], prediction): ([Vec<f64>; 2], Prediction),
@@ -40,8 +40,8 @@ pub(crate) fn gain(
         cross_validated_log_score_nats: block_log_score_nats.iter().sum(),
         block_log_score_nats: block_log_score_nats.into_iter().map(Some).collect(),
         free_run_rms_g: Some(FreeRun {
-            before: rms(record, noise, &nominal.free_run_g()?),
-            after: rms(record, noise, &extended.free_run_g()?),
+            before: OpenLoopSimulation::new(nominal, record)?.rms_g,
+            after: OpenLoopSimulation::new(extended, record)?.rms_g,
             noise: accel_noise_g * (squares.sum::<f64>() / 3.0).sqrt(),
         }),
         coefficient_shift: shifts(nominal, extended),
@@ -62,17 +62,4 @@ fn shifts(nominal: &FittedPlatform<'_>, extended: &FittedPlatform<'_>) -> Vec<Co
         }
     })
     .collect()
-}
-
-fn rms(record: &Record, noise: &NoiseModel, simulated_g: &[[f64; 3]]) -> f64 {
-    let used = |row: usize, axis: usize| {
-        let weight = noise.weights.as_ref().map_or(1.0, |w| w[row][axis]);
-        weight > 0.0
-    };
-    let rows = record.accel_g.iter().zip(simulated_g).enumerate();
-    let residuals = rows.flat_map(|(row, (measured, simulated))| {
-        let there = (0..3).filter(move |axis| used(row, *axis));
-        there.map(|axis| measured[axis] - simulated[axis])
-    });
-    rms_of_present(residuals).0
 }

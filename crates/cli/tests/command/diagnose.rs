@@ -95,6 +95,8 @@ fn residuals_of_the_nominal_model_are_told_and_written() {
     assert!(nis.mean > 3.0 && nis.p_value < 0.01, "{nis:?}");
     // Three values a row are expected, in the 99.9 % band.
     assert!(nis.band[0] < 3.0 && 3.0 < nis.band[1], "{nis:?}");
+    // No value is missing.
+    assert_eq!([nis.rows, nis.values], [4321, 3 * 4321], "{nis:?}");
     assert_eq!(shown.autocorrelation.unwrap().correlation.len(), 20);
     assert!(shown.lines.unwrap()[0].p_value < 1e-6);
     assert!(shown.free_run_rms_g.iter().all(|rms_g| *rms_g > 2e-5));

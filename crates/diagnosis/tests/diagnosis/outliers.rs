@@ -1,7 +1,7 @@
 //! Gross errors in rows that the noise audit cannot test.
 
 use gyrocal_answer::{FindingKind, Verdict};
-use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
+use gyrocal_diagnosis::{DiagnoseOptions, OpenLoopSimulation, diagnose};
 use gyrocal_truth::{Coefficients, Hidden, InitialAttitude, Scenario, Simulation, simulate};
 
 fn simulation(hidden: &[Hidden]) -> Simulation {
@@ -70,6 +70,33 @@ fn what_a_cause_explains_is_no_outlier() {
         "{:?}",
         found.audit.outliers
     );
+}
+
+/// An outlier, a missing value and a cause: the errors of the axes are of the same values as those before and after.
+#[test]
+fn open_loop_errors_are_of_the_values_that_the_audit_leaves() {
+    let term = Hidden::new("gyro_x.g_y", &[("size", 0.05)]).unwrap();
+    let Simulation {
+        mut record, bench, ..
+    } = simulation(&[term]);
+    record.accel_g[700][2] += 0.1;
+    record.accel_g[300][0] = f64::NAN;
+    let found = diagnose(&record, &bench, &DiagnoseOptions::default()).unwrap();
+    let nominal = OpenLoopSimulation::new(&found.nominal, &record).unwrap();
+    assert_eq!(nominal.left_out, 1);
+    let shown = found.result.residuals.as_ref().unwrap();
+    assert_eq!(shown.free_run_rms_g, nominal.axis_rms_g);
+    let before = found.result.gain.as_ref().unwrap().free_run_rms_g;
+    assert_eq!(before.unwrap().before, nominal.rms_g);
+    let squares = nominal.axis_rms_g.map(|rms_g| rms_g * rms_g);
+    let of_axes = (squares.iter().sum::<f64>() / 3.0).sqrt();
+    // Three sums in another order.
+    assert!((of_axes / nominal.rms_g - 1.0).abs() < 1e-14);
+    let sound = nominal.residuals_g[2].iter().enumerate();
+    let sound = sound.filter(|(row, _)| *row != 700);
+    let squares: f64 = sound.map(|(_, residual_g)| residual_g * residual_g).sum();
+    let of_axis = (squares / (record.len() - 1) as f64).sqrt();
+    assert_eq!(nominal.axis_rms_g[2], of_axis);
 }
 
 /// A warm-up that turns the platform by a third of a degree in the first hour: the filter without it is led

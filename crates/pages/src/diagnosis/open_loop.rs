@@ -4,7 +4,8 @@ use gyrocal_calibration::FittedPlatform;
 use gyrocal_diagnosis::OpenLoopSimulation;
 use gyrocal_document::{Chart, Item, Panel, Section, TimeAxis};
 use gyrocal_record::{AXES, Bench, Record};
-use gyrocal_statistics::{NORMAL_97_5, rms_of_present};
+use gyrocal_statistics::NORMAL_97_5;
+use gyrocal_words::counted;
 
 use super::{covariates, section};
 use crate::error::PageError;
@@ -95,15 +96,15 @@ fn residuals(
         let before = &nominal.residuals_g[axis];
         let after = extended.map(|run| &run.residuals_g[axis]);
         let half_width: Vec<f64> = sigma_g.iter().map(|row| NORMAL_97_5 * row[axis]).collect();
-        let rms = |values: &[f64]| micro_g(rms_of_present(values).0);
+        let rms = |run: &OpenLoopSimulation| micro_g(run.axis_rms_g[axis]);
         Panel {
             name: AXES[axis].to_owned(),
-            note: match after {
+            note: match extended {
                 Some(after) => {
-                    let before = rms(before);
+                    let before = rms(nominal);
                     format!("rms {} → {}", before.trim_end_matches(" µg"), rms(after))
                 }
-                None => format!("rms {}", rms(before)),
+                None => format!("rms {}", rms(nominal)),
             },
             abscissa: time.values.clone(),
             bands: vec![panels::band(
@@ -115,6 +116,13 @@ fn residuals(
         }
     });
     let noise = micro_g(of.bench.accel_noise_g);
+    let left_out = match nominal.left_out {
+        0 => String::new(),
+        count => format!(
+            " Not counted in any rms: {} that the noise audit left out.",
+            counted(count, "value")
+        ),
+    };
     Chart {
         title: match extended {
             Some(run) => format!(
@@ -131,7 +139,7 @@ fn residuals(
         caption: format!(
             "The band is of the residual of each row: noise of the accelerometers ({noise} declared), \
              and attitude that the gyros' noise has turned since the first row, less what the fitted \
-             coefficients absorb of it."
+             coefficients absorb of it.{left_out}"
         ),
         abscissa: "time from the first row".to_owned(),
         abscissa_unit: time.unit.to_owned(),

@@ -50,7 +50,12 @@ fn of_nominal(residuals: &Residuals, duration_h: f64) -> Vec<Test> {
     let mut add = |name: String, found, p| tests.push(("nominal", name, found, Some(p)));
     if let Some(nis) = &residuals.nis {
         let [low, high] = nis.band;
-        let found = format!("{:.3} (band {low:.3} to {high:.3})", nis.mean);
+        let found = format!(
+            "{:.3} (band {low:.3} to {high:.3}), {} in {}",
+            nis.mean,
+            counted(nis.values, "value"),
+            counted(nis.rows, "row")
+        );
         add(
             "mean normalised innovation squared".to_owned(),
             found,

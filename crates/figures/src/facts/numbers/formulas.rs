@@ -22,38 +22,21 @@ pub(super) fn largest_changes(part: &Part, to: &mut Checks) {
     }
 }
 
-/// The lower end of the band tells how many values the rows have; the upper end and p follow.
+/// Of the number of values and rows that stand beside it.
 pub(super) fn nis(part: &Part, to: &mut Checks) {
-    let Some(rows) = part.count("# rows over # days") else {
-        return;
-    };
-    let end = |values: f64, end: usize| chi_square_band(values, FALSE_ALARM)[end] / rows;
-    let values = |low: f64| {
-        let [mut less, mut more] = [1.0, 6.0 * rows];
-        for _ in 0..f64::MANTISSA_DIGITS {
-            let middle = (less + more) / 2.0;
-            *(if end(middle, 0) < low {
-                &mut less
-            } else {
-                &mut more
-            }) = middle;
-        }
-        less
-    };
-    for found in part.found("mean normalised innovation squared\t# (band # to #)\t#") {
-        let values = found[1].map(values);
-        to.is(
-            "band of the mean NIS",
-            Some(found[2]),
-            over(&[Some(values)], |x| end(x[0], 1)),
-        );
-        let p = |x: &[f64]| chi_square_two_sided_p(x[0] * rows, x[1]).unwrap_or(f64::NAN);
-        let mut p = over(&[Some(found[0]), Some(values)], p);
+    let pattern = "mean normalised innovation squared\t# (band # to #), # value* in # row*\t#";
+    for found in part.found(pattern) {
+        let [values, rows] = [3, 4].map(|count| (found[count][0] + found[count][1]) / 2.0);
+        let band = chi_square_band(values, FALSE_ALARM).map(|bound| Some([bound / rows; 2]));
+        to.is("band of the mean NIS", Some(found[1]), band[0]);
+        to.is("band of the mean NIS", Some(found[2]), band[1]);
+        let p = |x: &[f64]| chi_square_two_sided_p(x[0] * rows, values).unwrap_or(f64::NAN);
+        let mut p = over(&[Some(found[0])], p);
         // Between its ends a span may have the mean that is expected.
-        if found[0][0] * rows <= values[1] && values[0] <= found[0][1] * rows {
+        if found[0][0] * rows <= values && values <= found[0][1] * rows {
             p = p.map(|[low, _]| [low, 1.0]);
         }
-        to.is("p of the mean NIS", Some(found[3]), p);
+        to.is("p of the mean NIS", Some(found[5]), p);
     }
 }
 
