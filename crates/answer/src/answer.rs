@@ -79,6 +79,9 @@ pub struct Answer {
     /// Noise that a plant does not declare, with all findings in the model; none of a platform.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub undeclared_noise: Vec<UndeclaredNoise>,
+    /// Effects of a plant that a search in white noise named, and that are not detected beside that noise.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub only_in_white_noise: Vec<String>,
     /// Noise of the model that the coefficients are of; `None` without a fit, and of a plant.
     pub model_noise: Option<ModelNoise>,
     /// Noise audit of the accelerometers; `None` without a fit.

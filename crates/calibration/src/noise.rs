@@ -14,9 +14,6 @@ const MAX_STEPS: usize = 12;
 /// Gain of the log-likelihood that a step expects below which it is not made: a hundredth of each sigma.
 const LEAST_GAIN: f64 = 5e-5;
 
-/// Logarithm of a variance over the declared one that stands for an end that there is not: a thousand in size.
-const LARGEST: f64 = 13.8;
-
 /// Precision of the logarithm of a variance over the declared one before a record: a noise far below the others is
 /// unobservable. A prior of e^10 keeps its logarithm finite and has no weight where the noise is observable.
 const PRIOR_PRECISION: f64 = 1e-2;
@@ -34,8 +31,7 @@ pub fn is_gyro_noise_implausible(bench: &Bench) -> bool {
 }
 
 /// Maximises the likelihood over the logarithms of six variances by Fisher's scoring; intervals are by the profile of
-/// the likelihood. `score_from` gives the
-/// score with the derivatives by the noises from one on.
+/// the likelihood. `score_from` gives the score with the derivatives by the noises from one on.
 pub(crate) fn estimate(
     score_from: impl Fn(&[f64], usize) -> Result<NoiseScore, CalibrationError>,
 ) -> Result<NoiseEstimate, CalibrationError> {
@@ -73,13 +69,9 @@ pub(crate) fn estimate(
         value: at.value,
     };
     let mut value = |moved: &[f64]| restricted.value(moved, &mut score).ok();
-    let mut ratio = |index: usize| {
-        let size = |logarithm: f64| (0.5 * logarithm).exp();
-        let [low, high] = maximum.interval(index, &mut value);
-        NoiseRatio {
-            ratio: size(logarithms[index]),
-            interval: [low.map_or(0.0, size), size(high.unwrap_or(LARGEST))],
-        }
+    let mut ratio = |index: usize| NoiseRatio {
+        ratio: (0.5 * logarithms[index]).exp(),
+        interval: maximum.sizes(index, &mut value),
     };
     Ok(NoiseEstimate {
         accel: core::array::from_fn(&mut ratio),

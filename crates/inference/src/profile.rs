@@ -29,9 +29,10 @@ pub struct Maximum<'a> {
 }
 
 impl Maximum<'_> {
-    /// 95 % interval of a logarithm by its profile likelihood, the others moving with it as at the maximum. An end is
-    /// `None` where the likelihood stays high to a factor of 400 of the size. `value` is the logarithm of the likelihood
-    /// at some logarithms; `None` where the filter leaves the numbers.
+    /// 95 % interval of a logarithm by its profile likelihood. An end is `None` where the likelihood stays high to a
+    /// factor of 400 of the size. `value` is the logarithm of the likelihood at some logarithms, which are moved along
+    /// the ridge at the maximum, or the largest with the logarithm `own` of these; `None` where the filter leaves the
+    /// numbers.
     pub fn interval(
         &self,
         own: usize,
@@ -51,6 +52,17 @@ impl Maximum<'_> {
             };
             end.map(|distance| self.logarithms[own] + side * sigma * distance)
         })
+    }
+
+    /// The same as standard deviations over that where the logarithm is zero: from zero where nothing smaller is
+    /// excluded, to 400 times the estimate where nothing larger is.
+    pub fn sizes(&self, own: usize, value: &mut dyn FnMut(&[f64]) -> Option<f64>) -> [f64; 2] {
+        let size = |logarithm: f64| (0.5 * logarithm).exp();
+        let [low, high] = self.interval(own, value);
+        [
+            low.map_or(0.0, size),
+            size(high.unwrap_or(self.logarithms[own] + LONGEST)),
+        ]
     }
 }
 

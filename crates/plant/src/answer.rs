@@ -82,6 +82,7 @@ pub(crate) fn answer(
         power: Vec::new(),
         noise: noise(plant, fitted)?,
         undeclared_noise: fitted.undeclared_noise()?,
+        only_in_white_noise: Vec::new(),
         model_noise: None,
         noise_audit: None,
         allan: None,

@@ -10,7 +10,7 @@ use crate::cross_validation::cross_validated;
 use crate::diagnosed::Diagnosed;
 use crate::error::PlantError;
 use crate::fitted::FittedPlant;
-use crate::judged::searched;
+use crate::judged::{Judged, searched};
 use crate::loaded::LoadedPlant;
 use crate::prediction::{errors, horizon_s};
 use crate::record::PlantRecord;
@@ -45,11 +45,12 @@ pub(crate) fn diagnose_from(
         FittedPlant::nominal_from(plant, first.record().clone(), &held, start)?
     };
     let selection = nominal.selection()?;
-    let searched = searched(nominal, &selection, options, |found| {
+    let Judged { searched, refused } = searched(nominal, &selection, options, |found| {
         Ok(remainder(plant, found)?.verdict != ResidualVerdict::Unexplained)
     })?;
     let mut answer = answer(plant, &searched, &selection, options)?;
     answer.undetermined = directions;
+    answer.only_in_white_noise = refused.into_iter().map(str::to_owned).collect();
     answer.gain = cross_validated(&searched)?;
     let mut series = None;
     if let Some(later) = later {

@@ -84,6 +84,15 @@ impl FittedNoise {
         changed
     }
 
+    /// Variance of the correlated noise of an output.
+    pub(crate) fn correlated_variance(&self, output: usize) -> f64 {
+        let first = self.factors.len() - self.correlated.len();
+        let all = self.correlated.iter().zip(&self.factors[first..]);
+        all.filter(|(one, _)| one.output == output)
+            .map(|(one, factor)| one.variance * factor)
+            .sum()
+    }
+
     /// What a pass is to know of it beyond its factors.
     pub(crate) fn further(&self) -> FurtherNoise<'_> {
         FurtherNoise {

@@ -9,6 +9,22 @@ use gyrocal_hypothesis::{SearchOptions, Searched, Selection, search, search_from
 use crate::error::PlantError;
 use crate::fitted::FittedPlant;
 
+/// What was found.
+pub(crate) struct Judged {
+    pub(crate) searched: Searched<FittedPlant>,
+    /// Effects that the search in white noise named, and that are not detected in all noise.
+    pub(crate) refused: Vec<&'static str>,
+}
+
+impl From<Searched<FittedPlant>> for Judged {
+    fn from(searched: Searched<FittedPlant>) -> Self {
+        Self {
+            searched,
+            refused: Vec::new(),
+        }
+    }
+}
+
 /// Searches a record for the effects of a selection.
 ///
 /// # Errors
@@ -19,25 +35,37 @@ pub(crate) fn searched(
     selection: &Selection,
     options: &SearchOptions,
     is_white: impl Fn(&Searched<FittedPlant>) -> Result<bool, PlantError>,
-) -> Result<Searched<FittedPlant>, PlantError> {
+) -> Result<Judged, PlantError> {
     let rows = nominal.rows();
     let first = search(nominal, rows, selection, options)?;
     let has_found = !first.findings.is_empty() || !first.unmodelled.is_empty();
     if !has_found && is_white(&first)? {
-        return Ok(first);
+        return Ok(first.into());
     }
     let Some(second) = in_all_noise(&first, selection, options)? else {
-        return Ok(first);
+        return Ok(first.into());
     };
     let names = |of: &Searched<FittedPlant>| {
         let mut names: Vec<&str> = of.findings.iter().map(|one| one.effect).collect();
         names.sort_unstable();
         (names, of.unmodelled.len())
     };
-    if names(&first) == names(&second) && !second.fitted.needs_further_noise()? {
-        return Ok(first);
+    if names(&first) == names(&second) && !second.fitted.needs_further_noise().unwrap_or(true) {
+        return Ok(first.into());
     }
-    Ok(second)
+    // What stands in a set is told there.
+    let is_told = |effect: &str| {
+        let mut found = second.findings.iter();
+        found.any(|one| {
+            let mut set = one.alternatives.iter();
+            one.effect == effect || set.any(|other| other.effect == effect)
+        })
+    };
+    let named = first.findings.iter().map(|one| one.effect);
+    Ok(Judged {
+        refused: named.filter(|effect| !is_told(effect)).collect(),
+        searched: second,
+    })
 }
 
 /// The search in all noise; `None` where the nominal model needs no more than white noise, or has no fit with it.

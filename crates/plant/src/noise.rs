@@ -19,9 +19,6 @@ pub(crate) const PRIOR_SIGMA: f64 = 1.0;
 /// Precision of the logarithm of its variance.
 const PRIOR_PRECISION: f64 = 0.25 / (PRIOR_SIGMA * PRIOR_SIGMA);
 
-/// Distance of a logarithm of a variance that stands for an end of its interval that there is not: a thousand in size.
-const UNBOUNDED: f64 = 13.8;
-
 /// Most steps of Fisher's scoring.
 const MAX_STEPS: usize = 20;
 
@@ -86,32 +83,30 @@ impl NoiseProblem<'_> {
 
     /// The sizes of the declared noises at the largest likelihood, each with its 95 % interval by the profile of that.
     pub(crate) fn intervals(&self, start: &FittedNoise) -> Result<Vec<[f64; 3]>, PlantError> {
-        self.maximum(start, &[], |found, value| {
-            let size = |logarithm: f64| exp(0.5 * logarithm);
+        self.maximum(start, &[], |found, profile| {
             let level = |place: usize| {
-                let ratio = size(found.logarithms[place]);
+                let ratio = exp(0.5 * found.logarithms[place]);
                 let Some(covariance) = &found.covariance else {
-                    return [ratio, 0.0, ratio * size(UNBOUNDED)];
+                    return [ratio, 0.0, f64::MAX];
                 };
                 let maximum = Maximum {
                     logarithms: &found.logarithms,
                     covariance,
                     value: found.value,
                 };
-                let [low, high] = maximum.interval(place, value);
-                let high = high.unwrap_or(found.logarithms[place] + UNBOUNDED);
-                [ratio, low.map_or(0.0, size), size(high)]
+                let [low, high] = maximum.sizes(place, &mut |moved| profile(place, moved[place]));
+                [ratio, low, high]
             };
             (0..start.declared()).map(level).collect()
         })
     }
 
-    /// Goes to the largest likelihood by the sizes; `then` has it and the likelihood elsewhere.
+    /// Goes to the largest likelihood by the sizes; `then` has it, and the largest where one logarithm is another.
     fn maximum<R>(
         &self,
         start: &FittedNoise,
         held: &[usize],
-        then: impl FnOnce(&Found, &mut dyn FnMut(&[f64]) -> Option<f64>) -> R,
+        then: impl FnOnce(&Found, &mut dyn FnMut(usize, f64) -> Option<f64>) -> R,
     ) -> Result<R, PlantError> {
         let problem = self.problem;
         let count = self.values.len();
@@ -152,8 +147,15 @@ impl NoiseProblem<'_> {
             covariance: Cholesky::new(left).map(|cholesky| cholesky.inverse()),
             value: at.value,
         };
-        let mut value = |moved: &[f64]| restricted.value::<PlantError>(moved, &mut score).ok();
-        Ok(then(&found, &mut value))
+        let mut profile = |place: usize, logarithm: f64| {
+            let mut others = restricted.clone();
+            others.noises[place].is_held = true;
+            let mut start = found.logarithms.clone();
+            start[place] = logarithm;
+            let there = others.maximise(start, (LEAST_GAIN, MAX_STEPS), &mut score);
+            there.ok().map(|(_, there)| there.value)
+        };
+        Ok(then(&found, &mut profile))
     }
 
     fn score(&self, start: &FittedNoise, asked: Asked<'_>) -> Result<NoiseScore, PlantError> {

@@ -103,13 +103,16 @@ impl RecordSeries {
 }
 
 impl FittedPlant {
-    /// Estimated standard deviation of the noise of each output.
+    /// Estimated standard deviation of all noise of each output.
     #[must_use]
     pub fn output_sigmas(&self) -> Vec<f64> {
         let outputs = self.loaded().description.outputs.iter();
-        let declared = outputs.zip(self.noise_ratios());
+        let declared = outputs.zip(self.noise_ratios()).enumerate();
         declared
-            .map(|(output, ratio)| output.sigma * ratio)
+            .map(|(index, (output, ratio))| {
+                let white = output.sigma * ratio;
+                (white * white + self.noise.correlated_variance(index)).sqrt()
+            })
             .collect()
     }
 }

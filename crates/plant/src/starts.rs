@@ -163,6 +163,13 @@ fn led(problem: &Problem, noise: &FittedNoise, values: &[f64]) -> Result<Solutio
 
 /// A model with known parameters led to the data, which its initial states alone are to fit.
 pub(crate) fn led_by(solver: &Solver<'_>, sizes: &[f64]) -> Result<Solution, PlantError> {
+    if !solver.noise.is_declared() {
+        // Noise that the plant does not declare goes on from where the declared one leads.
+        let declared = with_noise(solver, solver.noise.loosened(Vec::new()));
+        if let Ok(found) = led_by(&declared, sizes) {
+            return Ok(solver.solve(found.at.clone()).unwrap_or(found));
+        }
+    }
     let problem = solver.problem;
     let values = vec![0.0; solver.lines.len()];
     let mut at = Iterate {
@@ -171,14 +178,7 @@ pub(crate) fn led_by(solver: &Solver<'_>, sizes: &[f64]) -> Result<Solution, Pla
     };
     for level in LEVELS {
         let loose = sizes.iter().map(|size| (level * size).powi(2)).collect();
-        let own = Solver {
-            problem,
-            lines: solver.lines.clone(),
-            sigmas: solver.sigmas.clone(),
-            base: solver.base.clone(),
-            parameters: solver.parameters.clone(),
-            noise: solver.noise.loosened(loose),
-        };
+        let own = with_noise(solver, solver.noise.loosened(loose));
         if let Ok(solution) = own.solve(at.clone()) {
             at = solution.at;
         }
@@ -196,6 +196,18 @@ pub(crate) fn led_by(solver: &Solver<'_>, sizes: &[f64]) -> Result<Solution, Pla
             values: at.values,
         })
     })
+}
+
+/// The same model in other noise.
+fn with_noise<'a>(solver: &Solver<'a>, noise: FittedNoise) -> Solver<'a> {
+    Solver {
+        problem: solver.problem,
+        lines: solver.lines.clone(),
+        sigmas: solver.sigmas.clone(),
+        base: solver.base.clone(),
+        parameters: solver.parameters.clone(),
+        noise,
+    }
 }
 
 /// Sizes of the states: of a simulation, or before the record.

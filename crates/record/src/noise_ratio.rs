@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Largest ratio of the ends of an interval of an observable noise.
+/// Largest upper end of the interval of an observable noise over its estimate.
 const OBSERVABLE_FACTOR: f64 = 100.0;
 
 /// An estimated standard deviation over the declared one.
@@ -35,11 +35,10 @@ pub enum NoiseDifference {
 }
 
 impl NoiseRatio {
-    /// True if the record determines the noise: the ends of its interval are within a factor of 100.
+    /// True if the record determines the noise: its interval ends within a factor of 100.
     #[must_use]
     pub fn is_observable(&self) -> bool {
-        let [low, high] = self.interval;
-        high <= OBSERVABLE_FACTOR * low
+        self.interval[1] <= OBSERVABLE_FACTOR * self.ratio
     }
 
     /// Significant difference from the declared noise, if the 95 % interval excludes 1.

@@ -31,6 +31,9 @@ pub fn all(answer: &Answer) -> Vec<String> {
 #[must_use]
 pub fn first_screen(answer: &Answer) -> Screen {
     let (standing, words) = match answer.verdict {
+        Verdict::Clean if !answer.undeclared_noise.is_empty() => {
+            (Standing::Doubtful, "NOTHING FOUND BESIDE NOISE")
+        }
         Verdict::Clean => (Standing::Good, "NOTHING FOUND"),
         Verdict::NotSettled => (Standing::Bad, "NOT SETTLED"),
         Verdict::Unexplained => (Standing::Bad, "UNEXPLAINED"),
@@ -63,9 +66,16 @@ pub fn facts(answer: &Answer) -> Vec<(&'static str, String)> {
     all.extend(later_record(answer).map(|words| ("later record", words)));
     let tests = answer.remainder.outputs.iter();
     let rare = tests.filter(|one| is_coloured(one));
-    all.extend(rare.map(|one| ("remainder", coloured(one))));
+    all.extend(rare.map(|one| ("remainder", remainder(answer, one))));
     let undeclared = answer.undeclared_noise.iter();
     all.extend(undeclared.map(|one| ("noise", undeclared_noise(one))));
+    if !answer.only_in_white_noise.is_empty() {
+        let words = format!(
+            "In white noise alone {} would be named; beside the noise above the record does not hold it.",
+            answer.only_in_white_noise.join(", ")
+        );
+        all.push(("noise", words));
+    }
     let undetermined = answer.undetermined.iter();
     all.extend(undetermined.map(|one| ("undetermined", direction(one))));
     if !answer.still_inputs.is_empty() {
@@ -87,17 +97,19 @@ pub fn undeclared_noise(one: &UndeclaredNoise) -> String {
     let size = format!("{} {}", significant(one.sigma, 2), one.unit);
     let what = match one.time_s {
         Some(time_s) => format!(
-            "Readings of {} have noise of {size} that is correlated over {} s",
+            "noise of {size} in readings of {}, correlated over {} s",
             one.channel,
             significant(time_s, 2)
         ),
-        None => format!("The {} has noise of {size}", one.channel),
+        None => format!("noise of {size} of the {}", one.channel),
     };
     let instead = match one.instead.as_slice() {
         [] => String::new(),
         others => format!(" Noise of {} explains as much.", others.join(", or of ")),
     };
-    format!("{what}, which the plant does not declare; effects were judged beside it.{instead}")
+    format!(
+        "Beside white noise, {what} explains what is left, which the plant does not declare; effects were judged beside it.{instead}"
+    )
 }
 
 /// The verdict, a sentence.
@@ -141,8 +153,12 @@ pub fn verdict(answer: &Answer) -> String {
                 count => format!(" of {count} records"),
             };
             let (tested, rows) = (answer.ranking.len(), answer.record.rows);
+            let beside = match answer.undeclared_noise.as_slice() {
+                [] => "",
+                _ => " beside noise that it does not declare, which hides effects of its own size",
+            };
             format!(
-                "Nothing is found that {plant} lacks: {tested} effects were tested on {rows} rows{of_records}."
+                "Nothing is found that {plant} lacks{beside}: {tested} effects were tested on {rows} rows{of_records}."
             )
         }
         _ => match names.len() {
@@ -237,6 +253,15 @@ pub fn coloured(one: &OutputTest) -> String {
         one.output,
         p_value(one.p_value)
     )
+}
+
+/// The same in an answer: significances rest on the noise that it tells.
+fn remainder(answer: &Answer, one: &OutputTest) -> String {
+    let words = coloured(one);
+    match answer.undeclared_noise.as_slice() {
+        [] => words,
+        _ => words.replace("white noise, take", "the noise above, take"),
+    }
 }
 
 /// What no record, or this one, does not determine.

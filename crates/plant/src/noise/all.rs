@@ -30,7 +30,7 @@ const FACTORS: [f64; 3] = [2.0, 1.4, 1.15];
 const LEAST_GAIN: f64 = 0.01;
 
 /// Variance over that which the record could just show, from which the correlation time of a noise is estimated.
-const PRESENT: f64 = 0.1;
+pub(super) const PRESENT: f64 = 0.1;
 
 /// First sizes of process noise and of correlated noise, over what the record could just show, and the first
 /// correlation time over the interval of the rows: either may explain what the other does.
@@ -41,13 +41,24 @@ const STARTS: [(f64, f64, f64); 4] = [
     (5.0, 0.1, 5.0),
 ];
 
-/// Size of a probing noise over that of its state or output.
+/// First size of a probing noise over that of its state or output, and how often it is brought to what the record
+/// could just show: where the first was large, the information on it was no more in proportion.
 const PROBE: f64 = 1e-6;
+const SCALINGS: usize = 4;
 
 impl NoiseProblem<'_> {
     /// The largest likelihood by sizes and correlation times, from these.
     pub(crate) fn maximise(&self, start: &FittedNoise) -> Result<NoiseFit, PlantError> {
-        let mut best = self.sizes(start, &[])?;
+        self.maximise_others(start, &[])
+    }
+
+    /// The same with the sizes of some noises held.
+    pub(super) fn maximise_others(
+        &self,
+        start: &FittedNoise,
+        held: &[usize],
+    ) -> Result<NoiseFit, PlantError> {
+        let mut best = self.sizes(start, held)?;
         let Some(bounds) = self.time_bounds().filter(|_| !start.correlated.is_empty()) else {
             return Ok(best);
         };
@@ -58,9 +69,11 @@ impl NoiseProblem<'_> {
                     while best.noise.factors[first + index] > PRESENT {
                         let now = best.noise.correlated[index].time_s;
                         let time_s = (now * by).clamp(bounds.0, bounds.1);
-                        let tried = self.sizes(&best.noise.with_time(index, time_s), &[])?;
-                        if time_s == now || tried.log_likelihood < best.log_likelihood + LEAST_GAIN
-                        {
+                        if time_s == now {
+                            break;
+                        }
+                        let tried = self.sizes(&best.noise.with_time(index, time_s), held)?;
+                        if tried.log_likelihood < best.log_likelihood + LEAST_GAIN {
                             break;
                         }
                         best = tried;
@@ -87,14 +100,19 @@ impl NoiseProblem<'_> {
         let (states, outputs) = (description.states.len(), description.outputs.len());
         let record = &self.problem.record;
         let duration_s = record.longest_s();
-        let process = (0..states).map(|state| {
-            let size = PROBE * rms(self.points.iter().skip(state).step_by(states));
+        let process = description.states.iter().enumerate().map(|(state, own)| {
+            let moved = rms(self.points.iter().skip(state).step_by(states));
+            // A state at rest is of the size that is known of it, or one.
+            let size = match (moved > 0.0, own.sigma.is_finite() && own.sigma > 0.0) {
+                (true, _) => moved,
+                (_, true) => own.sigma,
+                _ => 1.0,
+            };
             Process {
                 state,
-                density: size * size / duration_s,
+                density: (PROBE * size).powi(2) / duration_s,
             }
         });
-        let process: Vec<Process> = process.filter(|one| one.density > 0.0).collect();
         let time_s = self
             .time_bounds()
             .map(|(least, most)| (STARTS[0].2 * least / SHORTEST).min(most));
@@ -106,54 +124,55 @@ impl NoiseProblem<'_> {
                 variance: PROBE * PROBE * own * own * declared.factors[output],
             })
         });
-        let correlated: Vec<Correlated> = correlated.collect();
-        let count = process.len() + correlated.len();
-        let mut factors = declared.factors.clone();
-        factors.extend(core::iter::repeat_n(1.0, count));
-        let probing = FittedNoise {
-            factors,
-            process,
-            correlated,
+        let mut visible = FittedNoise {
+            factors: declared.factors.clone(),
+            process: process.collect(),
+            correlated: correlated.collect(),
             loose: Vec::new(),
         };
+        for _ in 0..SCALINGS {
+            self.rescale(&mut visible)?;
+        }
+        Ok(visible)
+    }
+
+    /// Brings the information on the logarithm of each undeclared noise towards one: as long as it is small, it goes
+    /// with the square of the variance.
+    fn rescale(&self, noise: &mut FittedNoise) -> Result<(), PlantError> {
+        let declared = self.problem.declared_noise().factors.len();
+        let count = noise.process.len() + noise.correlated.len();
+        noise.factors.truncate(declared);
+        noise.factors.resize(declared + count, 1.0);
         let score = self
             .lin
-            .pass(&probing, &[])
+            .pass(noise, &[])
             .noise_score()
             .map_err(|_| PlantError::Singular)?;
-        let all = probing.factors.len();
-        // The information on a logarithm goes with the square of the variance, as long as that is small.
-        let scale = |place: usize| score.information[place * all + place].sqrt().recip();
-        let (first, second) = (
-            declared.factors.len(),
-            declared.factors.len() + probing.process.len(),
-        );
-        let is_seen = |scale: &f64| scale.is_finite();
-        let process = probing.process.iter().zip(first..);
-        let process = process.filter_map(|(one, place)| {
-            let by = Some(scale(place)).filter(is_seen)?;
-            Some(Process {
+        let all = noise.factors.len();
+        let scales: Vec<f64> = (declared..all)
+            .map(|place| score.information[place * all + place].sqrt().recip())
+            .collect();
+        let (of_process, of_correlated) = scales.split_at(noise.process.len());
+        let process = noise.process.iter().zip(of_process);
+        noise.process = process
+            .filter(|(_, by)| by.is_finite())
+            .map(|(one, by)| Process {
                 density: one.density * by,
                 ..*one
             })
-        });
-        let correlated = probing.correlated.iter().zip(second..);
-        let correlated = correlated.filter_map(|(one, place)| {
-            let by = Some(scale(place)).filter(is_seen)?;
-            Some(Correlated {
+            .collect();
+        let correlated = noise.correlated.iter().zip(of_correlated);
+        noise.correlated = correlated
+            .filter(|(_, by)| by.is_finite())
+            .map(|(one, by)| Correlated {
                 variance: one.variance * by,
                 ..*one
             })
-        });
-        let (process, correlated): (Vec<_>, Vec<_>) = (process.collect(), correlated.collect());
-        let mut factors = declared.factors.clone();
-        factors.extend(core::iter::repeat_n(1.0, process.len() + correlated.len()));
-        Ok(FittedNoise {
-            factors,
-            process,
-            correlated,
-            loose: Vec::new(),
-        })
+            .collect();
+        noise
+            .factors
+            .truncate(declared + noise.process.len() + noise.correlated.len());
+        Ok(())
     }
 
     /// The best of several starts.

@@ -1,15 +1,16 @@
 //! Which noise that a plant does not declare a fit needs.
 
 use gyrocal_answer::{NoiseKind, UndeclaredNoise};
+use gyrocal_statistics::chi_square_quantile;
 
+use super::all::PRESENT;
 use super::{ABSENT, NoiseFit, NoiseProblem};
 use crate::error::PlantError;
 use crate::fitted::FittedPlant;
 use crate::fitted_noise::FittedNoise;
 
-/// What a noise must add to the log-likelihood beside the others to be told: in one of fifty records without it as
-/// much is gained, as its size cannot be negative. What lacks less in the place of another explains as much.
-const LEAST_GAIN: f64 = 2.0;
+/// Probability that any noise is told that is not there.
+const FALSE: f64 = 0.02;
 
 impl NoiseProblem<'_> {
     /// The best fit from some noise without those at some places.
@@ -18,12 +19,72 @@ impl NoiseProblem<'_> {
         for place in absent {
             start.factors[*place] = ABSENT;
         }
-        self.sizes(&start, absent)
+        self.maximise_others(&start, absent)
+    }
+
+    /// The best fit without noises that add little, these, and what each other one adds. One that others cannot do
+    /// without stays.
+    fn eliminated(&self, from: &FittedNoise, least_gain: f64) -> Option<Eliminated> {
+        let all = from.declared()..from.factors.len();
+        let (mut kept, mut absent): (Vec<usize>, Vec<usize>) =
+            all.partition(|place| from.factors[*place] > PRESENT);
+        let mut fit = self.without(from, &absent).ok()?;
+        // Those that add least go first.
+        loop {
+            let mut gains = Vec::with_capacity(kept.len());
+            let mut least: Option<(usize, f64, NoiseFit)> = None;
+            for place in &kept {
+                let left = [&absent[..], &[*place]].concat();
+                let Ok(next) = self.without(&fit.noise, &left) else {
+                    gains.push((*place, f64::INFINITY));
+                    continue;
+                };
+                let gain = fit.log_likelihood - next.log_likelihood;
+                gains.push((*place, gain));
+                if least.as_ref().is_none_or(|least| gain < least.1) {
+                    least = Some((*place, gain, next));
+                }
+            }
+            match least {
+                Some((place, gain, next)) if gain < least_gain => {
+                    absent.push(place);
+                    kept.retain(|other| *other != place);
+                    fit = next;
+                }
+                _ => return Some(Eliminated { fit, absent, gains }),
+            }
+        }
+    }
+
+    /// Noises among the absent ones that explain as much in the place of another.
+    fn instead(&self, found: &Eliminated, place: usize, least_gain: f64) -> Vec<usize> {
+        let rivals = found.absent.iter().copied();
+        rivals
+            .filter(|other| {
+                let mut left = found.absent.clone();
+                left.retain(|one| one != other);
+                left.push(place);
+                let mut start = found.fit.noise.clone();
+                start.factors[*other] = 1.0;
+                // One that cannot be fitted is no rival.
+                self.without(&start, &left)
+                    .is_ok_and(|rival| found.fit.log_likelihood - rival.log_likelihood < least_gain)
+            })
+            .collect()
     }
 }
 
+/// A fit without noises that add little.
+struct Eliminated {
+    fit: NoiseFit,
+    absent: Vec<usize>,
+    /// What each other one adds to the log-likelihood, by its place.
+    gains: Vec<(usize, f64)>,
+}
+
 impl FittedPlant {
-    /// Noise that the plant does not declare and that this model needs, each with what explains as much in its place.
+    /// Noise that the plant does not declare and that this model needs, each with what explains as much in its place;
+    /// none where it cannot be told.
     ///
     /// # Errors
     /// [`PlantError::Singular`].
@@ -31,46 +92,20 @@ impl FittedPlant {
         if self.noise.is_declared() {
             return Ok(Vec::new());
         }
+        // A size and a time, of each that there could be.
+        let count = self.noise.factors.len() - self.noise.declared();
+        let quantile = chi_square_quantile(1.0 - FALSE / count as f64, 2.0);
+        let least_gain = 0.5 * quantile.ok_or(PlantError::Singular)?;
         self.with_noise_problem(|unknown| {
-            let all = self.noise.declared()..self.noise.factors.len();
-            let mut kept: Vec<usize> = all.collect();
-            let mut absent: Vec<usize> = Vec::new();
-            let mut fit = unknown.sizes(&self.noise, &[])?;
-            // Those that add least go first.
-            let gains = loop {
-                let mut gains = Vec::with_capacity(kept.len());
-                for place in &kept {
-                    let left = [&absent[..], &[*place]].concat();
-                    let next = unknown.without(&fit.noise, &left)?;
-                    gains.push((*place, fit.log_likelihood - next.log_likelihood, next));
-                }
-                let least = gains
-                    .iter()
-                    .min_by(|a, b| a.1.total_cmp(&b.1))
-                    .filter(|least| least.1 < LEAST_GAIN);
-                let Some((place, _, next)) = least else {
-                    break gains;
-                };
-                absent.push(*place);
-                kept.retain(|other| other != place);
-                fit = next.clone();
+            let Some(found) = unknown.eliminated(&self.noise, least_gain) else {
+                return Ok(Vec::new());
             };
-            let told = gains.into_iter().map(|(place, gain_nats, _)| {
-                let mut instead = Vec::new();
-                for other in &absent {
-                    let mut left: Vec<usize> = absent.clone();
-                    left.retain(|one| one != other);
-                    left.push(place);
-                    let mut start = fit.noise.clone();
-                    start.factors[*other] = 1.0;
-                    let rival = unknown.without(&start, &left)?;
-                    if fit.log_likelihood - rival.log_likelihood < LEAST_GAIN {
-                        instead.push(self.channel(*other).1);
-                    }
-                }
-                Ok(self.told(&fit.noise, place, (gain_nats, instead)))
+            let told = found.gains.iter().map(|(place, gain_nats)| {
+                let instead = unknown.instead(&found, *place, least_gain).into_iter();
+                let instead = instead.map(|other| self.channel(other).1).collect();
+                self.told(&found.fit.noise, *place, (*gain_nats, instead))
             });
-            told.collect()
+            Ok(told.collect())
         })
     }
 

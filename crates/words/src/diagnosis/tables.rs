@@ -226,7 +226,7 @@ fn noise(result: &Answer) -> Option<Table> {
 
 fn interval(found: &NoiseLevel) -> String {
     let [low, high] = found.interval;
-    if high <= UNDETERMINED * low {
+    if high <= UNDETERMINED * found.ratio {
         format!("{:.3} ({low:.3} to {high:.3})", found.ratio)
     } else {
         "not determined".to_owned()
