@@ -2,12 +2,16 @@
 //!
 //! What a search in white noise finds is proposed to a second one, in which the levels and correlation times of all
 //! noise are estimated anew in each fit: a name stands if it is detected there. The first is kept where both agree and
-//! its residuals need no more than white noise.
+//! its residuals need no more than white noise, or where what it found explains more than all noise does.
 
 use gyrocal_hypothesis::{SearchOptions, Searched, Selection, search, search_from};
 
 use crate::error::PlantError;
 use crate::fitted::FittedPlant;
+
+/// What a model in white noise must gain over one in all noise for each term that it has more, log-likelihood: what
+/// the search of a catalogue of a hundred terms makes of nothing in one of a hundred records.
+const PER_TERM: f64 = 9.0;
 
 /// What was found.
 pub(crate) struct Judged {
@@ -51,6 +55,12 @@ pub(crate) fn searched(
         (names, of.unmodelled.len())
     };
     if names(&first) == names(&second) && !second.fitted.needs_further_noise().unwrap_or(true) {
+        return Ok(first.into());
+    }
+    let terms = |of: &Searched<FittedPlant>| of.findings.len() + of.unmodelled.len();
+    let more = terms(&first).saturating_sub(terms(&second)) as f64;
+    let gained = first.noise.log_likelihood - second.noise.log_likelihood;
+    if gained > PER_TERM * more.max(1.0) {
         return Ok(first.into());
     }
     // What stands in a set is told there.
