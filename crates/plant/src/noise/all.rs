@@ -23,6 +23,10 @@ const LONGEST: f64 = 0.05;
 /// The shortest over the interval of the rows: the correlation of neighbours is 0.05.
 const SHORTEST: f64 = 1.0 / 3.0;
 
+/// Most states and outputs together of a plant whose noise is estimated beyond what it declares: time goes with their
+/// fourth power.
+const MOST: usize = 8;
+
 /// Factors that correlation times are changed by, one after the other.
 const FACTORS: [f64; 3] = [2.0, 1.4, 1.15];
 
@@ -207,13 +211,15 @@ impl NoiseProblem<'_> {
 }
 
 impl FittedPlant {
-    /// The same model with all noise estimated together; `None` where the record has no more than white noise, and
-    /// of a plant that declares noise of rates.
+    /// The same model with all noise estimated together; `None` where the record has no more than white noise, of
+    /// a plant that declares noise of rates, and of one with more than eight states and outputs together.
     ///
     /// # Errors
     /// [`PlantError::Singular`], and those of a fit.
     pub(crate) fn in_all_noise(&self) -> Result<Option<Self>, PlantError> {
-        if !self.loaded().description.noises.is_empty() {
+        let description = &self.loaded().description;
+        let count = description.states.len() + description.outputs.len();
+        if !description.noises.is_empty() || count > MOST {
             return Ok(None);
         }
         let white = self.with_noise_problem(|unknown| {
