@@ -40,7 +40,7 @@ use several::Several;
 pub use several::joined_record;
 
 /// Axes of the platform.
-pub(crate) const AXES: usize = 3;
+const AXES: usize = 3;
 
 /// Seconds in an hour.
 const S_PER_H: f64 = 3600.0;

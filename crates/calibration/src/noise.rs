@@ -1,11 +1,10 @@
 //! Maximum-likelihood estimate of the noise relative to the declared noise.
 
 use gyrocal_inference::{Asked, Maximum, NoiseScore, Restricted, UnknownNoise};
-use gyrocal_record::{Bench, NoiseEstimate, NoiseRatio};
+use gyrocal_record::{AXES, Bench, NoiseEstimate, NoiseRatio};
 use nalgebra::{Cholesky, DVector};
 
 use crate::error::CalibrationError;
-use crate::fitted_platform::AXES;
 
 /// Most steps of Fisher's scoring; four bring a variance that is off by a factor of a hundred within
 /// a hundredth of its sigma.
@@ -35,7 +34,7 @@ pub fn is_gyro_noise_implausible(bench: &Bench) -> bool {
 pub(crate) fn estimate(
     score_from: impl Fn(&[f64], usize) -> Result<NoiseScore, CalibrationError>,
 ) -> Result<NoiseEstimate, CalibrationError> {
-    let noises = (0..2 * AXES).map(|factor| UnknownNoise {
+    let noises = (0..2 * AXES.len()).map(|factor| UnknownNoise {
         factor,
         prior: Some((0.0, PRIOR_PRECISION)),
         is_held: false,
@@ -58,7 +57,7 @@ pub(crate) fn estimate(
         };
         score_from(&factors(asked.logarithms), first)
     };
-    let start = DVector::zeros(2 * AXES);
+    let start = DVector::zeros(2 * AXES.len());
     let (logarithms, at) = restricted.maximise(start, (LEAST_GAIN, MAX_STEPS), &mut score)?;
     let covariance = Cholesky::new(at.information)
         .ok_or(CalibrationError::NotPositiveDefinite)?

@@ -217,9 +217,8 @@ impl<'a, T: SavedNumber> Replay<'a, T> {
                     self.answer.refused_rows += 1;
                     let alarm = self.watched.alarm();
                     if alarm.is_none() && error == ControllerError::Diverged {
-                        self.watched
-                            .reopen(&sample)
-                            .map_err(|error| stopped(record, row, error))?;
+                        let reopened = self.watched.reopen(&sample);
+                        reopened.map_err(|error| stopped(record, row, error))?;
                     }
                     alarm
                 }

@@ -40,6 +40,7 @@
 //!
 //! It draws nothing, and has no random walks. Play and delays are those of inputs.
 
+mod all_noise;
 mod answer;
 mod catalogue;
 mod columns;

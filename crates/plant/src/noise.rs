@@ -4,6 +4,8 @@
 mod all;
 mod needed;
 
+pub(crate) use all::is_needed;
+
 use gyrocal_inference::{Asked, Column, Maximum, NoiseScore, Reduced, Restricted, UnknownNoise};
 use gyrocal_statistics::math::{exp, ln};
 use nalgebra::{Cholesky, DMatrix, DVector};
@@ -61,7 +63,11 @@ pub(crate) struct NoiseProblem<'a> {
 
 impl NoiseProblem<'_> {
     /// The largest likelihood by the sizes, from these; noises in `held` stay.
-    fn sizes(&self, start: &FittedNoise, held: &[usize]) -> Result<NoiseFit, PlantError> {
+    pub(crate) fn sizes(
+        &self,
+        start: &FittedNoise,
+        held: &[usize],
+    ) -> Result<NoiseFit, PlantError> {
         self.maximum(start, held, |found, _| {
             let sigma = |i: usize| {
                 let own = found

@@ -1,11 +1,14 @@
 //! The answer of a diagnosis of a plant in sentences.
 
+mod noise;
+
+pub use noise::undeclared_noise;
+
 use crate::diagnosis::likelihood;
 use crate::format::tested;
 use gyrocal_answer::{
     AlternativeKind, Answer, Finding, Gain, NextRun, NullDirection, NullPart, OutputError,
-    OutputTest, Parameter, RecordResult, RecordSummary, Subject, UndeclaredNoise, UnmodelledTerm,
-    Verdict,
+    OutputTest, Parameter, RecordResult, RecordSummary, Subject, UnmodelledTerm, Verdict,
 };
 use gyrocal_document::{Screen, Standing};
 use gyrocal_statistics::format::{estimate, p_value, significant};
@@ -89,27 +92,6 @@ pub fn facts(answer: &Answer) -> Vec<(&'static str, String)> {
     let next = answer.next_runs.iter();
     all.extend(next.map(|one| ("next run", next_run(one))));
     all
-}
-
-/// Noise that the plant does not declare, a sentence or two.
-#[must_use]
-pub fn undeclared_noise(one: &UndeclaredNoise) -> String {
-    let size = format!("{} {}", significant(one.sigma, 2), one.unit);
-    let what = match one.time_s {
-        Some(time_s) => format!(
-            "noise of {size} in readings of {}, correlated over {} s",
-            one.channel,
-            significant(time_s, 2)
-        ),
-        None => format!("noise of {size} of the {}", one.channel),
-    };
-    let instead = match one.instead.as_slice() {
-        [] => String::new(),
-        others => format!(" Noise of {} explains as much.", others.join(", or of ")),
-    };
-    format!(
-        "Beside white noise, {what} explains what is left, which the plant does not declare; effects were judged beside it.{instead}"
-    )
 }
 
 /// The verdict, a sentence.

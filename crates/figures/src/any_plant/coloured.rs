@@ -75,24 +75,23 @@ pub(super) fn figures(context: &Context, plants: &[LoadedPlant]) -> Result<Vec<F
         Row::share(
             "any plant: clean records with readings of correlation 0.3 to 0.95: anything but noise named",
             of(Noise::Correlated),
-        )
-        .at_most(0.028, "twenty of 1000 at the level of 1 % and what a null in estimated noise costs"),
+        ),
         Row::share(
             "any plant: clean records with noise of a rate that is not declared: anything but noise named",
             of(Noise::OfRate),
-        )
-        .at_most(0.028, "as above"),
+        ),
         Row::share(
             "any plant: clean records with a log of the input that has noise of a tenth: anything but noise named",
             of(Noise::OfLog),
-        )
-        .at_most(0.06, "the mean error given the log is not linear, which no noise holds"),
-        Row::share("... of the first two: noise told that the plant does not declare", |one: &Of<Said>| {
-            (one.found.noise != Noise::OfLog).then_some(one.found.told)
-        }),
-        Row::mean("... processor time of a diagnosis, s, mean", |one: &Of<Said>| {
-            Some(one.found.seconds)
-        }),
+        ),
+        Row::share(
+            "... of the first two: noise told that the plant does not declare",
+            |one: &Of<Said>| (one.found.noise != Noise::OfLog).then_some(one.found.told),
+        ),
+        Row::mean(
+            "... processor time of a diagnosis, s, mean",
+            |one: &Of<Said>| Some(one.found.seconds),
+        ),
     ];
     context.measure(&population, &rows)
 }

@@ -9,7 +9,6 @@ use gyrocal_statistics::{chi_square_tail, median_interval_s};
 
 use super::{NoiseFit, NoiseProblem};
 use crate::error::PlantError;
-use crate::fitted::FittedPlant;
 use crate::fitted_noise::FittedNoise;
 
 /// Probability that white noise alone makes noise that a plant does not declare seem needed. The test of twice its gain
@@ -22,10 +21,6 @@ const LONGEST: f64 = 0.05;
 
 /// The shortest over the interval of the rows: the correlation of neighbours is 0.05.
 const SHORTEST: f64 = 1.0 / 3.0;
-
-/// Most states and outputs together of a plant whose noise is estimated beyond what it declares: time goes with their
-/// fourth power.
-const MOST: usize = 8;
 
 /// Factors that correlation times are changed by, one after the other.
 const FACTORS: [f64; 3] = [2.0, 1.4, 1.15];
@@ -99,7 +94,7 @@ impl NoiseProblem<'_> {
     }
 
     /// All noises of sizes that the record could just show, beside these declared ones; none that it cannot see.
-    fn just_visible(&self, declared: &FittedNoise) -> Result<FittedNoise, PlantError> {
+    pub(crate) fn just_visible(&self, declared: &FittedNoise) -> Result<FittedNoise, PlantError> {
         let description = &self.problem.plant.description;
         let (states, outputs) = (description.states.len(), description.outputs.len());
         let record = &self.problem.record;
@@ -180,7 +175,7 @@ impl NoiseProblem<'_> {
     }
 
     /// The best of several starts.
-    fn best_of_starts(&self, visible: &FittedNoise) -> Result<NoiseFit, PlantError> {
+    pub(crate) fn best_of_starts(&self, visible: &FittedNoise) -> Result<NoiseFit, PlantError> {
         let first = visible.declared();
         let interval_s = median_interval_s(&self.problem.record.time_s);
         let bounds = self.time_bounds();
@@ -210,56 +205,8 @@ impl NoiseProblem<'_> {
     }
 }
 
-impl FittedPlant {
-    /// The same model with all noise estimated together; `None` where the record has no more than white noise, of
-    /// a plant that declares noise of rates, and of one with more than eight states and outputs together.
-    ///
-    /// # Errors
-    /// [`PlantError::Singular`], and those of a fit.
-    pub(crate) fn in_all_noise(&self) -> Result<Option<Self>, PlantError> {
-        let description = &self.loaded().description;
-        let count = description.states.len() + description.outputs.len();
-        if !description.noises.is_empty() || count > MOST {
-            return Ok(None);
-        }
-        let white = self.with_noise_problem(|unknown| {
-            let declared = unknown.sizes(&self.noise.loosened(Vec::new()), &[])?;
-            let visible = unknown.just_visible(&declared.noise)?;
-            let all = unknown.best_of_starts(&visible)?;
-            Ok(is_needed(&all, &declared).then_some(all.noise))
-        })?;
-        let Some(mut noise) = white else {
-            return Ok(None);
-        };
-        let mut fitted = self.in_noise(noise)?;
-        // Parameters and noise in turn: white noise had led the first fit.
-        for _ in 0..2 {
-            noise = fitted
-                .with_noise_problem(|unknown| unknown.maximise(&fitted.noise))?
-                .noise;
-            fitted = fitted.in_noise(noise)?;
-        }
-        Ok(Some(fitted))
-    }
-
-    /// Whether this model needs more than the noise that the plant declares.
-    ///
-    /// # Errors
-    /// [`PlantError::Singular`].
-    pub(crate) fn needs_further_noise(&self) -> Result<bool, PlantError> {
-        if self.noise.is_declared() {
-            return Ok(false);
-        }
-        self.with_noise_problem(|unknown| {
-            let with = unknown.sizes(&self.noise, &[])?;
-            let declared = unknown.sizes(&self.noise.loosened(Vec::new()), &[])?;
-            Ok(is_needed(&with, &declared))
-        })
-    }
-}
-
 /// Whether white noise would seldom gain as much.
-fn is_needed(with: &NoiseFit, declared: &NoiseFit) -> bool {
+pub(crate) fn is_needed(with: &NoiseFit, declared: &NoiseFit) -> bool {
     let unknowns = with.noise.process.len() + 2 * with.noise.correlated.len();
     let gain = 2.0 * (with.log_likelihood - declared.log_likelihood);
     chi_square_tail(gain, unknowns as f64).is_some_and(|p| p < NEEDED_PROBABILITY)
