@@ -2,16 +2,24 @@
 //!
 //! What a search in white noise finds is proposed to a second one, in which the levels and correlation times of all
 //! noise are estimated anew in each fit: a name stands if it is detected there. The first is kept where both agree and
-//! its residuals need no more than white noise, or where what it found explains more than all noise does.
+//! its residuals need no more than white noise, or where it has the larger likelihood less a penalty for each term.
 
 use gyrocal_hypothesis::{SearchOptions, Searched, Selection, search, search_from};
 
 use crate::error::PlantError;
 use crate::fitted::FittedPlant;
 
-/// What a model in white noise must gain over one in all noise for each term that it has more, log-likelihood: what
-/// the search of a catalogue of a hundred terms makes of nothing in one of a hundred records.
-const PER_TERM: f64 = 9.0;
+/// Penalties of a term in the comparison of both models, log-likelihood: of an effect what the search of a catalogue of
+/// a hundred makes of nothing in one of a hundred records, and twice that of an unlisted line or curve, which has two
+/// sizes and a period or a shape.
+const OF_EFFECT: f64 = 9.0;
+const OF_UNLISTED: f64 = 18.0;
+
+/// Logarithm of the likelihood of what was found, less the penalties of its terms.
+fn penalised(of: &Searched<FittedPlant>) -> f64 {
+    let (effects, unlisted) = (of.findings.len() as f64, of.unmodelled.len() as f64);
+    of.noise.log_likelihood - OF_EFFECT * effects - OF_UNLISTED * unlisted
+}
 
 /// What was found.
 pub(crate) struct Judged {
@@ -57,10 +65,7 @@ pub(crate) fn searched(
     if names(&first) == names(&second) && !second.fitted.needs_further_noise().unwrap_or(true) {
         return Ok(first.into());
     }
-    let terms = |of: &Searched<FittedPlant>| of.findings.len() + of.unmodelled.len();
-    let more = terms(&first).saturating_sub(terms(&second)) as f64;
-    let gained = first.noise.log_likelihood - second.noise.log_likelihood;
-    if gained > PER_TERM * more.max(1.0) {
+    if penalised(&first) > penalised(&second) {
         return Ok(first.into());
     }
     // What stands in a set is told there.

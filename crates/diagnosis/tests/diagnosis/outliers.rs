@@ -83,7 +83,8 @@ fn open_loop_errors_are_of_the_values_that_the_audit_leaves() {
     record.accel_g[300][0] = f64::NAN;
     let found = diagnose(&record, &bench, &DiagnoseOptions::default()).unwrap();
     let nominal = OpenLoopSimulation::new(&found.nominal, &record).unwrap();
-    assert_eq!(nominal.left_out, 1);
+    // A gross error takes its row with it.
+    assert_eq!(nominal.left_out, 3);
     let shown = found.result.residuals.as_ref().unwrap();
     assert_eq!(shown.free_run_rms_g, nominal.axis_rms_g);
     let before = found.result.gain.as_ref().unwrap().free_run_rms_g;

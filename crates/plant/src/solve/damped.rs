@@ -28,6 +28,11 @@ const LONGEST: f64 = 2.0;
 /// Information along a direction over the largest, scaled, below which there is none.
 const NONE: f64 = 1e-12;
 
+/// A fall that ends the fit where no step gains, beside process noise: the covariance of the innovations moves with the
+/// trajectory, which the steps do not know. A score then differs from zero by less than half its standard deviation,
+/// and those of effects are taken with the parameters free.
+const STALLED_IN_NOISE: f64 = 0.1;
+
 /// Share of the cost that rounding of a long record moves.
 const ROUNDING: f64 = 1e-12;
 
@@ -49,6 +54,11 @@ impl Solver<'_> {
         let mut dynamics = self.dynamics();
         let mut at = self.simulated(&mut dynamics, values)?;
         let mut damping = FIRST;
+        let stalled = if self.noise.process.is_empty() {
+            STALLED
+        } else {
+            STALLED_IN_NOISE
+        };
         for index in 0..MAX_STEPS {
             let promised =
                 0.5 * solved(&at.normal.information, &at.normal.gradient).dot(&at.normal.gradient);
@@ -79,7 +89,7 @@ impl Solver<'_> {
             };
             match next {
                 Some(next) => at = next,
-                None if promised < STALLED => return Ok(self.found(at)),
+                None if promised < stalled => return Ok(self.found(at)),
                 None => return Err(no_fit("no step lowers the residuals")),
             }
         }
