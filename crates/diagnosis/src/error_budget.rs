@@ -8,7 +8,7 @@
 
 use gyrocal_calibration::GYRO_NOISE_PRIOR_SIGMA;
 use gyrocal_hypothesis::{
-    BESIDE_WALKS, CONFIDENCE_SET_DEVIANCE, DETECTION_PENALTY_FRACTION, NESTED_MODEL_CHI2,
+    BESIDE_WALKS, CONFIDENCE_SET_DEVIANCE, DETECTION_PENALTY_FRACTION, FAR_OFF, NESTED_MODEL_CHI2,
     WALK_SET_DEVIANCE,
 };
 
@@ -161,6 +161,12 @@ pub const TABLE: [Line; 16] = [
         value: DETECTION_PENALTY_FRACTION,
         meaning: "fraction of the search penalty applied in the detection test; all of it applies in ranking",
         origin: Origin::Choice("the threshold is drawn with it"),
+    },
+    Line {
+        test: "far off",
+        value: FAR_OFF,
+        meaning: "statistic above which the errors of the set-up and the best effects are compared by fits",
+        origin: Origin::Choice("spends nothing: detection is that of every effect"),
     },
     Line {
         test: "nested models",

@@ -9,7 +9,8 @@ use crate::fitted_stage::FittedStage;
 use crate::hypothesis::Hypothesis;
 use crate::model::FittedModel;
 use crate::pattern::Unmodelled;
-use crate::score::Scores;
+use crate::score::{Best, Scores};
+use crate::state::SearchState;
 
 /// Share of the statistic of the named effect by which a score may misjudge that of a rival: rivals that
 /// lack more than it are not fitted.
@@ -17,6 +18,13 @@ const MISJUDGED: f64 = 0.15;
 
 /// Most fits for one effect: of the nearest rivals that differ in the record.
 const MOST_FITS: usize = 6;
+
+/// Statistic from which on a score about a fit says little of what an effect gains: that of a latitude wrong by a
+/// tenth of a degree.
+pub const FAR_OFF: f64 = 900.0;
+
+/// Effects nearest by their scores that are fitted beside the errors of the set-up.
+const NEAREST: usize = 3;
 
 /// Rest of the information of one signature beside another below which both are the same in the record.
 const SAME: f64 = 1e-9;
@@ -59,7 +67,7 @@ pub(crate) fn fit_rivals<F: FittedModel>(
         let gained = match twin {
             Some((_, gained)) => *gained,
             None if fitted.len() >= MOST_FITS => continue,
-            None => match gained(compared, context, scores, hypotheses, other) {
+            None => match in_place(compared, context, scores, hypotheses, other) {
                 Some(gained) => gained,
                 None => continue,
             },
@@ -77,7 +85,7 @@ pub(crate) fn fit_rivals<F: FittedModel>(
 }
 
 /// Twice the log-likelihood of a rival less that of the named effect.
-fn gained<F: FittedModel>(
+fn in_place<F: FittedModel>(
     compared: &Compared<'_, F>,
     context: &SearchContext<'_>,
     scores: &Scores<'_>,
@@ -91,11 +99,53 @@ fn gained<F: FittedModel>(
         shape: scores.best[other]?.shape(hypotheses),
         ..accepted[compared.index].clone()
     };
-    let fitted = context
-        .fitted(&stage.fitted, &accepted, compared.unmodelled)
-        .ok()?;
+    gained(context, stage, &accepted, compared.unmodelled)
+}
+
+/// Twice the log-likelihood of a model with these effects less that of a stage, which it is fitted from.
+fn gained<F: FittedModel>(
+    context: &SearchContext<'_>,
+    stage: &FittedStage<F>,
+    accepted: &[Accepted],
+    unmodelled: &[Unmodelled],
+) -> Option<f64> {
+    let fitted = context.fitted(&stage.fitted, accepted, unmodelled).ok()?;
     let noise = fitted.fit_rate_noise(&stage.noise.noise.walking(), &[]);
     Some(2.0 * (noise.ok()?.log_likelihood - stage.noise.log_likelihood))
+}
+
+/// The effect to add to a model that is far off, by fits of the errors of the set-up and of the effects that are best
+/// by their scores; `None` of a model that is not, or where none can be fitted.
+pub(crate) fn best_by_fits<F: FittedModel>(
+    context: &SearchContext<'_>,
+    state: &SearchState<F>,
+    hypotheses: &[Hypothesis],
+    scores: &Scores<'_>,
+) -> Option<Best> {
+    if scores.largest() < FAR_OFF {
+        return None;
+    }
+    let mut all: Vec<Best> = scores.best.iter().copied().flatten().collect();
+    let penalised = |one: &Best| scores.penalised(one.hypothesis);
+    all.sort_by(|a, b| penalised(b).total_cmp(&penalised(a)));
+    let is_tried = |(place, one): &(usize, Best)| {
+        *place < NEAREST || hypotheses[one.hypothesis].effect.is_of_set_up()
+    };
+    let fitted = all.into_iter().enumerate().filter(is_tried);
+    let fitted = fitted.filter_map(|(_, one)| {
+        let mut accepted = state.accepted.clone();
+        accepted.push(Accepted {
+            hypothesis: one.hypothesis,
+            shape: one.shape(hypotheses),
+            detection: None,
+            searched: 0.0,
+            penalty: 0.0,
+        });
+        let gained = gained(context, &state.stage, &accepted, &state.unmodelled)?;
+        Some((gained - scores.penalty(one.hypothesis), one))
+    });
+    let best = fitted.max_by(|(one, _), (other, _)| one.total_cmp(other));
+    best.map(|(_, one)| one)
 }
 
 /// Whether two hypotheses of one size each are the same in this record.

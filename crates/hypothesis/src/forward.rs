@@ -3,6 +3,7 @@
 use gyrocal_statistics::math::ln;
 
 use crate::accepted::{Accepted, Detection};
+use crate::by_fits::best_by_fits;
 use crate::context::{MOST_EFFECTS, SearchContext};
 use crate::curve::share_beside_effects;
 use crate::hypothesis::Hypothesis;
@@ -156,7 +157,9 @@ pub(crate) fn forward<F: FittedModel>(
         if significant {
             scores.refine(&state.stage.fitted, context, &hypotheses, &[])?;
         }
-        let best = scores.named(&hypotheses).filter(|_| significant);
+        let best = best_by_fits(context, &state, &hypotheses, &scores)
+            .or_else(|| scores.named(&hypotheses))
+            .filter(|_| significant);
         // An unmodelled term goes into the model if no effect is significant, or if it explains so
         // much more that a name would be false.
         let limit = ln(context.options.unmodelled_probability) - 0.5 * margin.unwrap_or_default();

@@ -58,7 +58,8 @@
 //! rivals is that of a fit with b in the place of a, and of two effects whose sizes are hardly told apart one
 //! is taken out if the other, fitted anew, explains as much; it stays in the set. One effect takes the place
 //! of any two if both together are not detected beside it. [`CONFIDENCE_SET_DEVIANCE`] is calibrated by
-//! simulation. An effect gives way to one that is nested in it unless it is better by the 5 % point of χ²(1), [`NESTED_MODEL_CHI2`].
+//! simulation. Where a statistic exceeds [`FAR_OFF`], the effect to add is the best of fits, errors of the set-up among
+//! them. An effect gives way to one that is nested in it unless it is better by the 5 % point of χ²(1), [`NESTED_MODEL_CHI2`].
 //!
 //! # Noise and random walks
 //!
@@ -143,6 +144,7 @@ mod walk_findings;
 mod walks;
 
 pub use bank::{JointScore, NominalEstimate, ScoreBank};
+pub use by_fits::FAR_OFF;
 pub use context::{Proposed, SearchOptions};
 pub use continuation::{Phase, RecordOffset, continued, continued_shapes, recurs};
 pub use finding::{

@@ -138,6 +138,11 @@ impl<'a> Scores<'a> {
         self.likelihood_ratio(hypothesis) - self.null.penalties[hypothesis]
     }
 
+    /// The whole search penalty of a hypothesis.
+    pub(crate) fn penalty(&self, hypothesis: usize) -> f64 {
+        self.null.penalties[hypothesis]
+    }
+
     /// Logarithm of the sum of the likelihoods of a hypothesis and of all that could be in its place over
     /// its own, search penalties subtracted; `own` is twice the logarithm of its own.
     pub(crate) fn ln_likelihood_of_all(&self, hypothesis: usize, own: f64) -> f64 {

@@ -203,6 +203,16 @@ pub struct Channel {
 }
 
 impl Effect {
+    /// Whether it is an error of what the record was made with and not of the instrument: of the site, the clock, the
+    /// integration or the first state.
+    #[must_use]
+    pub const fn is_of_set_up(&self) -> bool {
+        matches!(
+            self.enters,
+            Enters::Inputs(_) | Enters::Time | Enters::Filter
+        ) || matches!(self.kind, EffectKind::InitialState)
+    }
+
     /// Whether the symbolic model has a term for it.
     #[must_use]
     pub fn has_term(&self) -> bool {

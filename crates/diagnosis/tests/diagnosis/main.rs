@@ -3,6 +3,7 @@
 
 mod causes;
 mod extended_unit;
+mod far_off;
 mod gain;
 mod gate;
 mod hostile;

@@ -1,6 +1,6 @@
 //! A diagnosis held against the right answer.
 
-use gyrocal::effect::{EffectKind, Enters};
+use gyrocal::effect::EffectKind;
 use gyrocal_answer::{Answer, Finding, Subject};
 use gyrocal_diagnosis::DiagnosisError;
 use gyrocal_plant::PlantError;
@@ -133,13 +133,7 @@ impl Name {
 }
 
 pub(super) fn is_physical(id: &str) -> bool {
-    effect_of(id).is_some_and(|effect| {
-        let is_set_up = matches!(
-            effect.enters,
-            Enters::Inputs(_) | Enters::Time | Enters::Filter
-        );
-        !effect.is_noise() && effect.kind != EffectKind::InitialState && !is_set_up
-    })
+    effect_of(id).is_some_and(|effect| !effect.is_noise() && !effect.is_of_set_up())
 }
 
 /// Whether an id is of a list of names; `i` of a family is `axis`, if that is given, but of noise any.
