@@ -27,7 +27,7 @@ pub fn gross_errors(record: &Record, noise_g: f64) -> Vec<usize> {
         .map(|row| row.iter().map(|g| g * g).sum::<f64>().sqrt())
         .collect();
     let differences: Vec<f64> = (0..norms.len())
-        .map(|row| (norms[row] - local_median(&norms, row)).abs())
+        .map(|row| difference(&norms, row))
         .collect();
     let mut finite: Vec<f64> = differences
         .iter()
@@ -41,6 +41,41 @@ pub fn gross_errors(record: &Record, noise_g: f64) -> Vec<usize> {
     (0..differences.len())
         .filter(|row| differences[*row] > limit)
         .collect()
+}
+
+/// How far the norm of a row is from those of its neighbours; `NaN` of a row without a norm, and where there are too
+/// few others.
+fn difference(norms: &[f64], row: usize) -> f64 {
+    let norm = norms[row];
+    let median = local_median(norms, row);
+    if norm.is_nan() || !median.is_nan() {
+        return (norm - median).abs();
+    }
+    // Among missing rows: beyond both medians of the nearest that are not, between which errors of accelerometers may
+    // have moved it.
+    let (before, after) = norms.split_at(row);
+    let sides = [
+        nearest_median(before.iter().rev()),
+        nearest_median(after[1..].iter()),
+    ];
+    let beyond = |sign: f64| {
+        let excess = sides.iter().flatten().map(|side| sign * (norm - side));
+        excess.reduce(f64::min)
+    };
+    let excess = [1.0, -1.0].into_iter().filter_map(beyond);
+    excess
+        .reduce(f64::max)
+        .map_or(f64::NAN, |excess| excess.max(0.0))
+}
+
+/// Median of the nearest norms on one side; `None` where there are too few.
+fn nearest_median<'n>(norms: impl Iterator<Item = &'n f64>) -> Option<f64> {
+    let present = norms.filter(|norm| norm.is_finite());
+    let mut near: Vec<f64> = present.take(HALF_WINDOW).copied().collect();
+    if near.len() < LEAST_ROWS {
+        return None;
+    }
+    upper_median(&mut near)
 }
 
 /// Median of the norms of the neighbouring rows; `NaN` where there are too few.
@@ -87,6 +122,23 @@ mod tests {
         let mut record = record();
         record.accel_g[100..103].fill([0.5, 0.5, 0.5]);
         assert_eq!(gross_errors(&record, 1e-5), [100, 101, 102]);
+    }
+
+    /// One accelerometer changes its scale over the hours in which it is missing.
+    #[test]
+    fn a_gross_error_among_missing_rows_is_found_and_a_drift_is_none() {
+        let mut record = record();
+        for (row, accel_g) in record.accel_g.iter_mut().enumerate() {
+            *accel_g = accel_g.map(|g| g * 1e-5f64.mul_add(row as f64, 1.0));
+        }
+        for row in (50..250).filter(|row| *row != 150) {
+            record.accel_g[row][0] = f64::NAN;
+        }
+        assert!(gross_errors(&record, 1e-5).is_empty());
+        record.accel_g[150][0] += 0.05;
+        assert_eq!(gross_errors(&record, 1e-5), [150]);
+        record.accel_g[150][0] -= 0.1;
+        assert_eq!(gross_errors(&record, 1e-5), [150]);
     }
 
     #[test]

@@ -133,7 +133,13 @@ fn jump_at(samples: &Samples<'_>, complete: &[Complete], at: usize) -> Option<Ju
         let size_rad = norm(minus(found, expected));
         let way_rad = sides.speed_rad_per_s * (sides.after[0].time_s - sides.before[0].time_s);
         let is_straight = sides.duration_s() < LONGEST_S;
-        return (is_straight && size_rad > LEAST_RAD + CURVATURE * way_rad).then(|| Jump {
+        let is_off = is_straight && size_rad > LEAST_RAD + CURVATURE * way_rad;
+        // Straight lines through rows at unequal intervals miss a way that bends: its turn tells, where it is known.
+        let is_turn = || {
+            rate_before(complete, at).is_some()
+                && across_gap(samples, complete, at, &sides).is_none()
+        };
+        return (is_off && !is_turn()).then(|| Jump {
             at,
             size_rad,
             expected: unit(expected),
