@@ -8,6 +8,7 @@ mod gyro_noise;
 mod later;
 mod noise_audited_fit;
 mod of_calibration;
+mod one_platform;
 mod options;
 mod records;
 mod shared_or_own;

@@ -8,6 +8,7 @@ use gyrocal_record::{Bench, Record, SetupProblem};
 
 use super::answer::record_summary;
 use super::noise_audited_fit::{AuditedFit, noise_audited_fit};
+use super::one_platform::{Difference, OnePlatform};
 use super::{DiagnoseOptions, Diagnosis, Sound, concluded, diagnose_sound};
 use crate::error::DiagnosisError;
 use crate::error_budget::shares;
@@ -18,10 +19,6 @@ use crate::request;
 use crate::series::Innovations;
 use crate::stage::Stage;
 use gyrocal_answer::{Estimated, Gaps, RecordResult, RecordSummary};
-
-/// Difference of a coefficient between two records that no error of a platform makes, in its standard
-/// deviations.
-const OTHER_PLATFORM: f64 = 200.0;
 
 /// One of several records, with its set-up checked.
 pub struct RecordToDiagnose<'a> {
@@ -172,7 +169,16 @@ fn jointly(
         magnitudes.extend(tested.map(|tested| (one.name.as_str(), tested)));
         audits.push(audited);
     }
-    one_platform(sound, &audits)?;
+    let one_platform = OnePlatform::new(&audits);
+    let of_several = |other: Difference| DiagnosisError::SeveralPlatforms {
+        name: sound[other.record].name.clone(),
+        first: sound[0].name.clone(),
+        coefficient: DRIFT[other.place].id,
+        sigmas: other.sigmas,
+    };
+    if let Some(other) = one_platform.is_impossible() {
+        return Err(of_several(other));
+    }
     let benches: Vec<&Bench> = sound.iter().map(|one| one.bench).collect();
     let fits: Vec<FittedPlatform<'_>> = audits.iter().map(|one| one.nominal.clone()).collect();
     let nominal = FittedPlatform::joined(&fits, &benches)?;
@@ -186,7 +192,7 @@ fn jointly(
     };
     // No test of the whole is left of what the records have spent.
     shares.noise_audit = of_audit.false_alarm * count;
-    let sound = Sound {
+    let joined = Sound {
         run: Run {
             record: &record,
             bench: first.bench,
@@ -200,7 +206,11 @@ fn jointly(
         work: work() - before,
         shares,
     };
-    Ok(concluded(sound, options, watch)?.into_owned())
+    let found = concluded(joined, options, watch)?;
+    match one_platform.is_less_likely(found.extended.as_ref().unwrap_or(&found.nominal)) {
+        Some(other) => Err(of_several(other)),
+        None => Ok(found.into_owned()),
+    }
 }
 
 /// Problems of the set-up of one of several records, with its name.
@@ -210,39 +220,6 @@ pub fn problems_of(name: &str, mut problems: Vec<SetupProblem>) -> Vec<SetupProb
         problem.description = format!("{name}: {}", problem.description);
     }
     problems
-}
-
-/// Refuses records whose coefficients no platform has together.
-fn one_platform(
-    sound: &[SoundRecord<'_>],
-    audits: &[AuditedFit<'_>],
-) -> Result<(), DiagnosisError> {
-    let Some((first, others)) = audits.split_first() else {
-        return Ok(());
-    };
-    let mut worst: Option<(f64, usize, usize)> = None;
-    for (index, other) in others.iter().enumerate() {
-        for place in 0..DRIFT.len() {
-            let variance = first.nominal.covariance()[(place, place)]
-                + other.nominal.covariance()[(place, place)];
-            let difference = other.nominal.values()[place] - first.nominal.values()[place];
-            let sigmas = difference / variance.sqrt();
-            if worst.is_none_or(|(most, ..)| sigmas.abs() > f64::abs(most)) {
-                worst = Some((sigmas, index + 1, place));
-            }
-        }
-    }
-    match worst {
-        Some((sigmas, record, place)) if sigmas.abs() > OTHER_PLATFORM => {
-            Err(DiagnosisError::SeveralPlatforms {
-                name: sound[record].name.clone(),
-                first: sound[0].name.clone(),
-                coefficient: DRIFT[place].id,
-                sigmas: sigmas.abs(),
-            })
-        }
-        _ => Ok(()),
-    }
 }
 
 /// The magnitude test with the least p-value of all records.
