@@ -124,15 +124,21 @@ pub(crate) fn find(
         number(tolerance_deg)
     );
     Some(match fitting[..] {
-        [] => unknown(found, evidence),
+        [] => unknown(found, evidence, tilt_deg <= tolerance_deg),
         [best, ..] => told(best, &fitting[1..], found, evidence),
     })
 }
 
-fn unknown(found: String, evidence: String) -> SetupFinding {
+/// What nothing explains; `is_upright` if the first vertical is that of the declared attitude.
+fn unknown(found: String, evidence: String, is_upright: bool) -> SetupFinding {
+    let prior = if is_upright {
+        " If they are right, the gyros drift by more than [prior] allows: widen its sigmas."
+    } else {
+        ""
+    };
     let description = format!(
         "{found}, and no exchange of axes, no other sign of the latitude and no other convention \
-         of angles explains it. Measure initial_angles_deg again, or leave them out."
+         of angles explains it. Measure initial_angles_deg again, or leave them out.{prior}"
     );
     SetupFinding::new(SetupKind::Attitude, description, evidence).stopping()
 }
