@@ -157,9 +157,9 @@ pub(crate) fn forward<F: FittedModel>(
         if significant {
             scores.refine(&state.stage.fitted, context, &hypotheses, &[])?;
         }
-        let best = best_by_fits(context, &state, &hypotheses, &scores)
-            .or_else(|| scores.named(&hypotheses))
-            .filter(|_| significant);
+        let by_fits = best_by_fits(context, &state, &hypotheses, &scores);
+        let best = by_fits.or_else(|| scores.named(&hypotheses));
+        let best = best.filter(|_| significant);
         // An unmodelled term goes into the model if no effect is significant, or if it explains so
         // much more that a name would be false.
         let limit = ln(context.options.unmodelled_probability) - 0.5 * margin.unwrap_or_default();
@@ -192,7 +192,9 @@ pub(crate) fn forward<F: FittedModel>(
             Outcome::Gained(gained) => gains.push(gained),
             Outcome::NotDetected => return Ok(Selected::new(state, first, Ended::Complete)),
         }
-        if let Some(ended) = against_walks(&state, &gains, threshold, beside) {
+        // Walks follow what a model that is far off leaves better than its first effect does.
+        let ended = against_walks(&state, &gains, threshold, beside);
+        if let Some(ended) = ended.filter(|_| by_fits.is_none()) {
             return Ok(Selected::new(state, first, ended));
         }
         beside.add_walks_beside(&state, threshold);
