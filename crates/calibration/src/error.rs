@@ -119,7 +119,8 @@ pub enum CalibrationError {
     NoRecords,
     /// The bench description of a record contradicts that of the first.
     #[error(
-        "the bench file of record {} contradicts that of the first record in {key}: one platform has one;          give the records that belong together",
+        "the bench file of record {} contradicts that of the first record in {key}: one platform has one; \
+         give the records that belong together",
         record + 1
     )]
     UnlikeBenches {

@@ -51,6 +51,13 @@ pub const FILTER_TEST_ALPHA: f64 = 1e-6;
 /// million such values of sound records not one is.
 pub const UNTESTABLE_OUTLIER_Z: f64 = 7.0;
 
+/// Least difference of a coefficient of another platform, in its standard deviations: one platform differs by as much
+/// in one of two hundred thousand pairs.
+pub(crate) const OTHER_PLATFORM: f64 = 5.0;
+
+/// By how much coefficients of their own must be likelier, nats: as 150 to 1.
+pub(crate) const OTHER_PLATFORM_NATS: f64 = 5.0;
+
 /// Part of α that no test spends: drawn thresholds and asymptotic p-values are each a little off.
 const RESERVE: f64 = 0.05;
 
@@ -83,7 +90,7 @@ pub struct Line {
 }
 
 /// The whole budget.
-pub const TABLE: [Line; 17] = [
+pub const TABLE: [Line; 19] = [
     Line {
         test: "noise audit",
         value: NOISE_AUDIT_SHARE,
@@ -180,6 +187,20 @@ pub const TABLE: [Line; 17] = [
         meaning: "largest difference of penalised statistics within the set",
         origin: Origin::Calibrated(
             "`cargo figures diagnosis --part naming`: 95 % coverage at 5 sigma",
+        ),
+    },
+    Line {
+        test: "two platforms, difference",
+        value: OTHER_PLATFORM,
+        meaning: "standard deviations of a coefficient by which records of two platforms differ at least",
+        origin: Origin::Theory("normal tail of nine coefficients: 5e-6 per pair"),
+    },
+    Line {
+        test: "two platforms, evidence",
+        value: OTHER_PLATFORM_NATS,
+        meaning: "log-evidence in nats of coefficients of their own over one platform with all that was found",
+        origin: Origin::Calibrated(
+            "`cargo figures diagnosis --part field`, records of two platforms",
         ),
     },
     Line {

@@ -203,8 +203,8 @@ pub struct Channel {
 }
 
 impl Effect {
-    /// Whether it is an error of what the record was made with and not of the instrument: of the site, the clock, the
-    /// integration or the first state.
+    /// Whether it is an error of what the record was made with and not of the instrument or plant: of the site, the
+    /// inputs, the clock, the integration or the first state.
     #[must_use]
     pub const fn is_of_set_up(&self) -> bool {
         matches!(

@@ -112,6 +112,17 @@ impl FittedPlatform<'_> {
         self.log_evidence(&parts)
     }
 
+    /// Standard deviation of an unknown before the record, as the evidence takes it.
+    #[must_use]
+    pub fn evidence_sigma(&self, unknown: usize) -> f64 {
+        let declared = self.problem.unknowns[unknown].sigma;
+        if declared.is_finite() {
+            return declared;
+        }
+        let known = self.uncertainty.total[(unknown, unknown)].sqrt();
+        WIDE * self.problem.values[unknown].hypot(known)
+    }
+
     /// From passes over the records.
     fn log_evidence(
         &self,
@@ -121,19 +132,12 @@ impl FittedPlatform<'_> {
             values,
         }: &Seen,
     ) -> Result<f64, CalibrationError> {
-        let unknowns = &self.problem.unknowns;
-        let count = unknowns.len();
+        let count = self.problem.unknowns.len();
         let mut information = gram.view((1, 1), (count, count)).into_owned();
         let mut gradient = DVector::zeros(count);
         let mut prior = 0.0;
-        for (i, unknown) in unknowns.iter().enumerate() {
-            let sigma = if unknown.sigma.is_finite() {
-                unknown.sigma
-            } else {
-                let known = self.uncertainty.total[(i, i)].sqrt();
-                WIDE * self.problem.values[i].hypot(known)
-            };
-            let weight = sigma.powi(-2);
+        for i in 0..count {
+            let weight = self.evidence_sigma(i).powi(-2);
             information[(i, i)] += weight;
             gradient[i] = -gram[(0, i + 1)] - weight * self.problem.values[i];
             prior += weight * self.problem.values[i].powi(2);

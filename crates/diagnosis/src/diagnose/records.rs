@@ -3,12 +3,14 @@
 use std::borrow::Cow;
 
 use gyrocal::generated::platform::DRIFT;
-use gyrocal_calibration::{FittedPlatform, GyroAxes, NoiseModel, Run, joined_record, work};
+use gyrocal_calibration::{
+    CalibrationError, FittedPlatform, GyroAxes, NoiseModel, Run, joined_record, work,
+};
 use gyrocal_record::{Bench, Record, SetupProblem};
 
 use super::answer::record_summary;
 use super::noise_audited_fit::{AuditedFit, noise_audited_fit};
-use super::one_platform::{Difference, OnePlatform};
+use super::one_platform::OnePlatform;
 use super::{DiagnoseOptions, Diagnosis, Sound, concluded, diagnose_sound};
 use crate::error::DiagnosisError;
 use crate::error_budget::shares;
@@ -18,7 +20,7 @@ use crate::noise::{AuditOptions, NoiseAudit, NoiseFinding};
 use crate::request;
 use crate::series::Innovations;
 use crate::stage::Stage;
-use gyrocal_answer::{Estimated, Gaps, RecordResult, RecordSummary};
+use gyrocal_answer::{Estimated, FalseAlarmShares, Gaps, RecordResult, RecordSummary};
 
 /// One of several records, with its set-up checked.
 pub struct RecordToDiagnose<'a> {
@@ -137,13 +139,20 @@ fn of(name: &str, error: DiagnosisError) -> DiagnosisError {
     }
 }
 
-/// One search over all records.
-fn jointly(
-    sound: &[SoundRecord<'_>],
+/// Noise audit, first fit and magnitude test of each of several records.
+struct Audited<'a> {
+    audits: Vec<AuditedFit<'a>>,
+    magnitude: Option<MagnitudeTest>,
+    /// Work done on them.
+    work: u64,
+    /// What no test of the whole has spent.
+    shares: FalseAlarmShares,
+}
+
+fn audited<'a>(
+    sound: &'a [SoundRecord<'_>],
     options: &DiagnoseOptions,
-    watch: &mut dyn FnMut(Stage),
-) -> Result<Diagnosis<'static>, DiagnosisError> {
-    watch(Stage::Audit);
+) -> Result<Audited<'a>, DiagnosisError> {
     let before = work();
     let mut shares = shares(options.false_alarm_probability);
     let count = sound.len().max(1) as f64;
@@ -169,16 +178,58 @@ fn jointly(
         magnitudes.extend(tested.map(|tested| (one.name.as_str(), tested)));
         audits.push(audited);
     }
-    let one_platform = OnePlatform::new(&audits);
-    let of_several = |other: Difference| DiagnosisError::SeveralPlatforms {
-        name: sound[other.record].name.clone(),
-        first: sound[0].name.clone(),
-        coefficient: DRIFT[other.place].id,
-        sigmas: other.sigmas,
+    // No test of the whole is left of what the records have spent.
+    shares.noise_audit = of_audit.false_alarm * count;
+    Ok(Audited {
+        audits,
+        magnitude: least(magnitudes, count),
+        work: work() - before,
+        shares,
+    })
+}
+
+/// One search over all records, if they are of one platform.
+fn jointly(
+    sound: &[SoundRecord<'_>],
+    options: &DiagnoseOptions,
+    watch: &mut dyn FnMut(Stage),
+) -> Result<Diagnosis<'static>, DiagnosisError> {
+    watch(Stage::Audit);
+    let audited = audited(sound, options)?;
+    let one_platform = OnePlatform::new(&audited.audits);
+    let found = searched_together(sound, audited, options, watch);
+    let refuted = match &found {
+        Ok(found) => one_platform.refuted_by(found.extended.as_ref().unwrap_or(&found.nominal)),
+        Err(DiagnosisError::Calibration(
+            CalibrationError::NoDescent { .. }
+            | CalibrationError::NotConverged { .. }
+            | CalibrationError::Pass { .. },
+        )) => one_platform.difference,
+        Err(_) => None,
     };
-    if let Some(other) = one_platform.is_impossible() {
-        return Err(of_several(other));
+    match refuted {
+        Some(other) => Err(DiagnosisError::SeveralPlatforms {
+            name: sound[other.record].name.clone(),
+            first: sound[0].name.clone(),
+            coefficient: DRIFT[other.place].id,
+            sigmas: other.sigmas,
+        }),
+        None => found,
     }
+}
+
+fn searched_together(
+    sound: &[SoundRecord<'_>],
+    Audited {
+        audits,
+        magnitude,
+        work: before,
+        shares,
+    }: Audited<'_>,
+    options: &DiagnoseOptions,
+    watch: &mut dyn FnMut(Stage),
+) -> Result<Diagnosis<'static>, DiagnosisError> {
+    let start = work();
     let benches: Vec<&Bench> = sound.iter().map(|one| one.bench).collect();
     let fits: Vec<FittedPlatform<'_>> = audits.iter().map(|one| one.nominal.clone()).collect();
     let nominal = FittedPlatform::joined(&fits, &benches)?;
@@ -186,12 +237,8 @@ fn jointly(
     let (record, starts) = joined_record(&records);
     let audited = merged(audits, nominal, &record, &starts);
     let Some(first) = sound.first() else {
-        return Err(DiagnosisError::Calibration(
-            gyrocal_calibration::CalibrationError::NoRecords,
-        ));
+        return Err(DiagnosisError::Calibration(CalibrationError::NoRecords));
     };
-    // No test of the whole is left of what the records have spent.
-    shares.noise_audit = of_audit.false_alarm * count;
     let joined = Sound {
         run: Run {
             record: &record,
@@ -201,16 +248,12 @@ fn jointly(
             .iter()
             .flat_map(|one| problems_of(&one.name, one.setup.clone()))
             .collect(),
-        magnitude: least(magnitudes, count),
+        magnitude,
         audited,
-        work: work() - before,
+        work: before + (work() - start),
         shares,
     };
-    let found = concluded(joined, options, watch)?;
-    match one_platform.is_less_likely(found.extended.as_ref().unwrap_or(&found.nominal)) {
-        Some(other) => Err(of_several(other)),
-        None => Ok(found.into_owned()),
-    }
+    Ok(concluded(joined, options, watch)?.into_owned())
 }
 
 /// Problems of the set-up of one of several records, with its name.

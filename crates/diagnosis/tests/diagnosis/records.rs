@@ -125,24 +125,55 @@ fn clean_records_are_clean_together() {
     assert_eq!(found.alone[0].result, alone.result);
 }
 
-#[test]
-fn records_of_two_platforms_are_refused() {
-    let mut simulations = [
-        simulation(8, [5.0, 10.0, 20.0], &[]),
-        simulation(9, [60.0, -30.0, 120.0], &[]),
-    ];
-    simulations[1] = simulate(&Scenario {
-        seed: 9,
-        coefficients: Coefficients::default(),
-        initial: InitialAttitude::AnglesDeg([60.0, -30.0, 120.0]),
+/// Two days at an attitude of a platform whose drift across the input axis is another one.
+fn of_platform(
+    seed: u64,
+    angles_deg: [f64; 3],
+    by_deg_per_h: f64,
+    latitude_by_deg: f64,
+) -> Simulation {
+    let mut coefficients = Coefficients::PAPER_LIKE;
+    coefficients.g_deg_per_h_per_g[2] += by_deg_per_h;
+    let mut simulation = simulate(&Scenario {
+        seed,
+        coefficients,
+        initial: InitialAttitude::AnglesDeg(angles_deg),
         duration_s: 86_400.0,
         interval_s: 180.0,
         ..Scenario::default()
     })
     .unwrap();
-    let error = together(&simulations).err().expect("two platforms");
-    let DiagnosisError::SeveralPlatforms { name, .. } = &error else {
-        panic!("{error}");
-    };
-    assert_eq!(name, "record 2");
+    simulation.bench.latitude_deg += latitude_by_deg;
+    simulation
+}
+
+#[test]
+fn records_of_two_platforms_are_refused() {
+    let first = || of_platform(8, [5.0, 10.0, 20.0], 0.0, 0.0);
+    for by_deg_per_h in [0.01, -0.4] {
+        let second = of_platform(9, [60.0, -30.0, 120.0], by_deg_per_h, 0.0);
+        let error = together(&[first(), second]).err();
+        let error = error.unwrap_or_else(|| panic!("two platforms, {by_deg_per_h}"));
+        let DiagnosisError::SeveralPlatforms { name, .. } = &error else {
+            panic!("{error}");
+        };
+        assert_eq!(name, "record 2");
+    }
+}
+
+/// A latitude moves the coefficients of each record alone by hundreds of standard deviations.
+#[test]
+fn an_error_that_records_share_makes_no_two_platforms_of_one() {
+    let simulations = [
+        of_platform(8, [5.0, 10.0, 20.0], 0.0, 1.0),
+        of_platform(9, [60.0, -30.0, 120.0], 0.0, 1.0),
+    ];
+    let found = together(&simulations).unwrap();
+    let causes: Vec<&str> = found
+        .together
+        .result
+        .causes()
+        .map(|one| one.effect.as_str())
+        .collect();
+    assert_eq!(causes, ["site.latitude"]);
 }
