@@ -6,9 +6,9 @@ use gyrocal_statistics::math::ln;
 /// determine.
 const SAME: f64 = 0.02;
 
-/// The same for onsets and time constants: weights that are off by a fifth take some thousandths of a
+/// The same for what is fitted in it, sizes, onsets and time constants: weights that are off by a fifth take some thousandths of a
 /// standard deviation from the best estimate.
-const SAME_SHAPES: f64 = 0.1;
+const SAME_FIT: f64 = 0.1;
 
 /// Noise of the rates of a plant.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,9 +35,9 @@ impl RateNoise {
         self.differs_by(SAME, other)
     }
 
-    /// Whether any of it differs so much that onsets and time constants would move.
-    pub(crate) fn moves_shapes(&self, other: &Self) -> bool {
-        self.differs_by(SAME_SHAPES, other)
+    /// Whether any of it differs so much that sizes, onsets and time constants would move.
+    pub(crate) fn moves_fit(&self, other: &Self) -> bool {
+        self.differs_by(SAME_FIT, other)
     }
 
     fn differs_by(&self, least: f64, other: &Self) -> bool {

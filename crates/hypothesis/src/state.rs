@@ -6,7 +6,7 @@ use crate::fitted_stage::FittedStage;
 use crate::model::FittedModel;
 use crate::pattern::Unmodelled;
 use crate::rate_noise::{RateNoise, RateNoiseFit};
-use crate::shape::{About, ShapeScale, estimate_shapes};
+use crate::shape::{About, estimate_shapes};
 
 /// What a model holds.
 pub(crate) fn terms<F>(
@@ -134,7 +134,7 @@ pub(crate) fn stage<F: FittedModel>(
 }
 
 /// A fit with these effects, with their shapes and the noise of its rates as the record tells them: in
-/// turn, until the noise stays, since a shape is best in the noise that the effect leaves.
+/// turn, until the noise stays, since shapes and sizes are best in the noise that the effect leaves.
 pub(crate) fn settled_with_shapes<F: FittedModel>(
     context: &SearchContext<'_>,
     (fitted, about): (F, About),
@@ -146,16 +146,12 @@ pub(crate) fn settled_with_shapes<F: FittedModel>(
         let fitted = estimate_shapes(context, fitted, about, accepted, refit)?;
         let before = fitted.rate_noise();
         let (fitted, noise) = with_noise(fitted)?;
-        let moves_shapes = fitted.rate_noise().moves_shapes(&before);
-        Ok::<_, F::Error>((fitted, noise, moves_shapes))
+        let moves_fit = fitted.rate_noise().moves_fit(&before);
+        Ok::<_, F::Error>((fitted, noise, moves_fit))
     };
     let mut latest = once(fitted, about, accepted)?;
-    let has_shape = accepted.iter().any(|own| {
-        let hypothesis = &context.set.hypotheses[own.hypothesis];
-        own.shape.is_some() && ShapeScale::of(hypothesis, &context.rows).is_some()
-    });
     for _ in 1..ROUNDS {
-        if !(has_shape && latest.2) || context.budget.is_spent(latest.0.work()) {
+        if !latest.2 || context.budget.is_spent(latest.0.work()) {
             break;
         }
         let mut next = accepted.to_vec();

@@ -6,8 +6,12 @@ use super::outlier::{Outlier, REACH};
 /// it: noise hides one such in a hundred.
 const SHOWN_SIGMAS: f64 = 2.3;
 
+/// Part of an outlier by which a reading may miss the way of the readings on one side and belong to it.
+const BELONGS: f64 = 0.1;
+
 /// Keeps the outliers of an axis that the readings \[g\] show as well. A filter without a large effect that
-/// changes fast is led astray, and its innovations jump from row to row; the readings follow the motion.
+/// changes fast is led astray, and its innovations jump from row to row; the readings follow the motion. After a
+/// jump of the attitude they go on from the row of the jump.
 pub(crate) fn retain_those_in_readings(outliers: &mut Vec<Outlier>, accel_g: &[[f64; 3]]) {
     let mut sound = vec![true; accel_g.len()];
     for outlier in outliers.iter() {
@@ -17,7 +21,42 @@ pub(crate) fn retain_those_in_readings(outliers: &mut Vec<Outlier>, accel_g: &[[
         let by_sound = shown_by(one, accel_g, |row| sound[row]);
         // Amid many outliers no reading is sound: all are taken.
         by_sound.or_else(|| shown_by(one, accel_g, |_| true)) != Some(false)
+            && !belongs_to_a_side(one, accel_g, |row| sound[row])
     });
+}
+
+/// Whether a reading lies on the way of the three nearest of the readings `taken` on one side, as far as noise lets
+/// tell.
+fn belongs_to_a_side(
+    outlier: &Outlier,
+    accel_g: &[[f64; 3]],
+    taken: impl Fn(usize) -> bool,
+) -> bool {
+    let own = accel_g[outlier.row][outlier.axis];
+    sides(outlier, accel_g, taken).into_iter().any(|side| {
+        let Some(near) = side.get(..3) else {
+            return false;
+        };
+        let (predicted, spread) = at_zero(near);
+        BELONGS * outlier.deviation.abs() > SHOWN_SIGMAS * spread
+            && (own - predicted).abs() < BELONGS * outlier.size_g.abs()
+    })
+}
+
+/// Up to three of the nearest readings `taken` of the axis of an outlier, before it and after it, with their
+/// distances in rows.
+fn sides(
+    outlier: &Outlier,
+    accel_g: &[[f64; 3]],
+    taken: impl Fn(usize) -> bool,
+) -> [Vec<(f64, f64)>; 2] {
+    let Outlier { row, axis, .. } = *outlier;
+    let value = |other: &usize| taken(*other) && !accel_g[*other][axis].is_nan();
+    let at = |other: usize| (other as f64 - row as f64, accel_g[other][axis]);
+    let near = row.saturating_sub(REACH)..(row + REACH + 1).min(accel_g.len());
+    let before = (near.start..row).rev().filter(&value).map(at).take(3);
+    let after = (row + 1..near.end).filter(&value).map(at).take(3);
+    [before.collect(), after.collect()]
 }
 
 /// Whether a prediction from the nearest of the readings `taken` shows an outlier: the cubic through two on
@@ -27,18 +66,8 @@ fn shown_by(
     accel_g: &[[f64; 3]],
     taken: impl Fn(usize) -> bool,
 ) -> Option<bool> {
-    let Outlier { row, axis, .. } = *outlier;
-    let own = accel_g[row][axis];
-    let value = |other: &usize| taken(*other) && !accel_g[*other][axis].is_nan();
-    let at = |other: usize| (other as f64 - row as f64, accel_g[other][axis]);
-    let near = row.saturating_sub(REACH)..(row + REACH + 1).min(accel_g.len());
-    let before: Vec<_> = (near.start..row)
-        .rev()
-        .filter(value)
-        .map(at)
-        .take(3)
-        .collect();
-    let after: Vec<_> = (row + 1..near.end).filter(value).map(at).take(3).collect();
+    let own = accel_g[outlier.row][outlier.axis];
+    let [before, after] = sides(outlier, accel_g, taken);
     let two_of_each = before.len() >= 2 && after.len() >= 2;
     let both = two_of_each.then(|| [&before[..2], &after[..2]].concat());
     let one_side = [before, after].into_iter().filter(|side| side.len() == 3);
@@ -142,6 +171,17 @@ mod tests {
         }
         // One that is lost leads the fit astray.
         assert_eq!(kept, all);
+    }
+
+    /// The filter needs a row to follow: what it has of that row is no outlier.
+    #[test]
+    fn the_row_of_a_jump_is_no_outlier() {
+        for (seed, row) in (0..20).zip([1, 40, 96].into_iter().cycle()) {
+            let jump: Vec<(usize, f64)> = (row..100).map(|row| (row, 800.0)).collect();
+            let mut found = outliers(&[(row, 800.0)]);
+            retain_those_in_readings(&mut found, &readings(seed, &jump));
+            assert!(found.is_empty(), "{seed}: {found:?}");
+        }
     }
 
     #[test]

@@ -1,5 +1,6 @@
-//! A number of the bench file that is far off: scores about the nominal fit say little of any effect.
+//! What is far off, a number of the bench file or an attitude: scores about the nominal fit say little of any effect.
 
+use gyrocal_answer::Verdict;
 use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
 use gyrocal_truth::{Coefficients, Hidden, InitialAttitude, Scenario, simulate};
 
@@ -27,5 +28,38 @@ fn a_latitude_far_off_is_named_and_the_cause_beside_it() {
         // One in sixteen thousand is farther off than four sigmas.
         let error_deg = size.estimate + by_deg;
         assert!(error_deg.abs() < 4.0 * size.sigma.unwrap(), "{size:?}");
+    }
+}
+
+/// The noise of the gyros is that of the nominal model at first, a hundred times too large.
+#[test]
+fn a_knock_of_half_a_degree_is_named_alone() {
+    for (seed, part) in [(8_321, 0.3), (8_322, 0.2)] {
+        let knock = [
+            ("x_deg", 2.0 * part),
+            ("y_deg", 1.2 * part),
+            ("z_deg", 0.75 * part),
+            ("onset_s", 61_830.0),
+        ];
+        let simulation = simulate(&Scenario {
+            seed,
+            coefficients: Coefficients::PAPER_LIKE,
+            initial: InitialAttitude::AnglesDeg([12.0, -25.0, 40.0]),
+            duration_s: 1.5 * 86_400.0,
+            hidden: vec![Hidden::new("platform.knock", &knock).unwrap()],
+            ..Scenario::default()
+        })
+        .unwrap();
+        let options = DiagnoseOptions::default();
+        let found = diagnose(&simulation.record, &simulation.bench, &options).unwrap();
+        let names: Vec<&str> = found
+            .result
+            .findings
+            .iter()
+            .map(|one| one.effect.as_str())
+            .collect();
+        assert_eq!(names, ["platform.knock"], "seed {seed}");
+        let settled = found.result.verdict;
+        assert_eq!(settled, Verdict::EffectsFound, "seed {seed}");
     }
 }
