@@ -157,11 +157,7 @@ pub(crate) fn forward<F: FittedModel>(
         if significant {
             scores.refine(&state.stage.fitted, context, &hypotheses, &[])?;
         }
-        let by_fits = if significant {
-            best_by_fits(context, &state, &hypotheses, &scores)
-        } else {
-            None
-        };
+        let by_fits = best_by_fits(context, &state, &hypotheses, &scores);
         let best = by_fits.or_else(|| scores.named(&hypotheses));
         let best = best.filter(|_| significant);
         // An unmodelled term goes into the model if no effect is significant, or if it explains so
