@@ -31,7 +31,8 @@ fn a_latitude_far_off_is_named_and_the_cause_beside_it() {
     }
 }
 
-/// The noise of the gyros is that of the nominal model at first, a hundred times too large.
+/// The first fit with the knock is made in the noise that the nominal model tells, a hundred times too large; walks
+/// take up what a noise of that fit leaves.
 #[test]
 fn a_knock_of_half_a_degree_is_named_alone() {
     for (seed, part) in [(8_321, 0.3), (8_322, 0.2)] {
@@ -59,7 +60,7 @@ fn a_knock_of_half_a_degree_is_named_alone() {
             .map(|one| one.effect.as_str())
             .collect();
         assert_eq!(names, ["platform.knock"], "seed {seed}");
-        let settled = found.result.verdict;
-        assert_eq!(settled, Verdict::EffectsFound, "seed {seed}");
+        let verdict = found.result.verdict;
+        assert_eq!(verdict, Verdict::EffectsFound, "seed {seed}");
     }
 }
