@@ -1,6 +1,7 @@
 //! Instrument tests on simulated logs whose errors are known.
 
 mod allan;
+mod between_stops;
 mod positions;
 mod rates;
 mod stops;
@@ -18,6 +19,7 @@ use crate::harness::{Context, Population};
 pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
     let mut figures = allan::figures(context)?;
     figures.extend(positions::figures(context)?);
+    figures.extend(between_stops::figures(context)?);
     figures.extend(stops::figures(context)?);
     figures.extend(vertical::figures(context)?);
     figures.extend(rates::figures(context)?);

@@ -64,6 +64,7 @@ mod earth_rate;
 mod error;
 pub mod file_format;
 mod gyro_from_turns;
+mod interval_noise;
 mod least_squares;
 mod log;
 mod log_lines;

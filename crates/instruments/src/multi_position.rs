@@ -6,8 +6,10 @@
 //! controls.
 
 mod alternatives;
+mod between_stops;
 mod cross_validation;
 mod few_positions;
+mod levels;
 mod log_biases;
 mod negative_controls;
 mod positions;
@@ -16,12 +18,14 @@ mod regression;
 mod report;
 mod result;
 mod search;
+mod stop_parts;
 mod terms;
 
 use gyrocal::generated::catalogue::RATES;
 use gyrocal_statistics::{chi_square_tail, f_tail};
 
 pub use alternatives::Alternative;
+pub use between_stops::NoiseBetweenStops;
 pub use cross_validation::{CrossValidation, cross_validate};
 pub use few_positions::{FewPositionFinding, FewPositionLaw, FewPositionReport, few_position_test};
 pub use log_biases::LogBiases;

@@ -19,6 +19,8 @@ pub struct StopMeans {
     pub gyro: [f64; 3],
     /// Standard errors of the means of the gyros.
     pub gyro_sigma: [f64; 3],
+    /// Means of the gyros over equal parts of the stop, less that of the stop; empty for one too short.
+    pub gyro_parts: Vec<[f64; 3]>,
     /// Mean output of the accelerometers, in the unit of the log.
     pub accel: [f64; 3],
     /// Standard errors of the means of the accelerometers.
@@ -30,6 +32,10 @@ const BLOCKS_S: [f64; 3] = [0.25, 0.5, 1.0];
 
 /// Least degrees of freedom for the variance of block means.
 const FEWEST_BLOCKS: f64 = 30.0;
+
+/// Parts of a stop, and the fewest samples of each.
+const PARTS: usize = 4;
+const FEWEST_SAMPLES: usize = 8;
 
 /// Averages each stop.
 ///
@@ -55,6 +61,7 @@ pub fn stop_means(log: &Log, stops: &[Range<usize>]) -> Vec<StopMeans> {
                 time_s: 0.5 * (times[0] + times[times.len() - 1]),
                 gyro,
                 gyro_sigma,
+                gyro_parts: parts(&log.gyro[samples.clone()], gyro),
                 accel,
                 accel_sigma,
             }
@@ -69,6 +76,18 @@ fn moments(samples: &[[f64; 3]], inflation: [f64; 3]) -> ([f64; 3], [f64; 3]) {
         (variance * inflation[axis] / samples.len() as f64).sqrt()
     });
     (mean, sigma)
+}
+
+/// Means over the parts of a stop, less that of all.
+fn parts(samples: &[[f64; 3]], of_all: [f64; 3]) -> Vec<[f64; 3]> {
+    let long = samples.len() / PARTS;
+    if long < FEWEST_SAMPLES {
+        return Vec::new();
+    }
+    let chunks = (0..PARTS).map(|part| &samples[part * long..][..long]);
+    chunks
+        .map(|chunk| core::array::from_fn(|axis| mean(chunk, axis) - of_all[axis]))
+        .collect()
 }
 
 /// Variance of a mean over that of white noise.

@@ -304,7 +304,7 @@ fn few_terms(answer: &TumbleAnswer<'_>, report: &FewPositionReport) -> Section {
             list.into(),
         ],
     };
-    let lead = "Judged by the standard errors of the stops.";
+    let lead = "Integrated over the noise between stops that these stops may have.";
     section("terms", TERMS, lead, items)
 }
 
@@ -339,12 +339,16 @@ fn few_fit(gyro: &FewPositionLaw) -> String {
             gyro.gyro
         ),
     };
-    if gyro.inflation > 1.0 {
-        text += &format!(
-            "; scatter beyond the standard errors: sigmas are {:.1} times as large",
-            gyro.inflation
-        );
-    }
+    let level = |[median, most]: [f64; 2]| {
+        let [median, most] = [median, most].map(|level| format::short(level, 2));
+        format!("{median} (at most {most})")
+    };
+    text += &format!(
+        "; noise between stops, deg/h: scatter {}, flicker {}, walk from stop to stop {}",
+        level(gyro.noise.scatter_deg_per_h),
+        level(gyro.noise.flicker_deg_per_h),
+        level(gyro.noise.walk_deg_per_h)
+    );
     if !gyro.undetermined.is_empty() {
         text += &format!(
             ". Not determined in addition: {}",

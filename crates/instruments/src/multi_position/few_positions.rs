@@ -1,24 +1,26 @@
 //! Multi-position tests of few stops: two, six, twelve.
 //!
-//! Too few stops tell their own scatter, so that terms are judged by the standard errors of the stops,
-//! and the law is the one that the positions determine.
+//! Few stops hardly tell their own scatter, so that laws and terms are integrated over it
+//! ([`super::between_stops`]), and the law is the one that the positions determine.
 
 use gyrocal::generated::catalogue::RATES;
-use gyrocal_statistics::{chi_square_tail, two_sided_p};
+use gyrocal_statistics::{chi_square_tail, p_of_least};
 use serde::Serialize;
 
+use super::between_stops::{BetweenStops, NoiseBetweenStops, TermEvidence};
 use super::positions::Positions;
 use super::regression::{Fit, WeightedStops};
 use super::report::CoefficientReport;
 use super::terms::Term;
 use crate::error::{InstrumentError, Unfit};
 
-/// Least p-value of residuals that the standard errors of the stops explain.
-const EXPLAINED: f64 = 0.01;
+/// Largest decrease of the log-likelihood, integrated over the noise between stops, of an alternative: 97 of 100 hidden
+/// terms are within it.
+const LARGEST_DEFICIT: f64 = 3.0;
 
-/// Largest decrease of the log-likelihood of an alternative: half of the 95 % quantile of chi-square with
-/// one degree of freedom.
-const LARGEST_DEFICIT: f64 = 1.92;
+/// Degrees of freedom of the noise between stops, in all gyros, below which no term is named: with two a term would have
+/// to be fifty times their scatter.
+const LEAST_FREEDOM: usize = 3;
 
 /// A term whose column the law leaves less than this share of is not distinguishable from the law.
 const SMALLEST_SHARE: f64 = 0.03;
@@ -31,8 +33,19 @@ pub struct FewPositionReport {
     pub stops: usize,
     /// The law of each gyro.
     pub gyros: Vec<FewPositionLaw>,
+    /// Degrees of freedom of all gyros that tell the noise between stops beside a term of each. Of less than three no term
+    /// is named.
+    pub freedom_of_noise: usize,
     /// Significant terms beyond the nominal laws, in the order of their significance.
     pub findings: Vec<FewPositionFinding>,
+}
+
+impl FewPositionReport {
+    /// Whether the stops tell the noise between them, so that a term is tested.
+    #[must_use]
+    pub fn tells_noise(&self) -> bool {
+        self.freedom_of_noise >= LEAST_FREEDOM || !self.findings.is_empty()
+    }
 }
 
 /// Law of one gyro.
@@ -41,7 +54,9 @@ pub struct FewPositionReport {
 pub struct FewPositionLaw {
     /// Name of the gyro.
     pub gyro: String,
-    /// Coefficients of the determined terms of the nominal law, and of the significant ones beyond it.
+    /// Coefficients of the determined terms of the nominal law, and of the significant ones beyond it. Their standard
+    /// deviations are those of the noise within and between stops: intervals of 1.96 of them hold 95 %. Where no degrees
+    /// of freedom are left they are those of equal biases at all stops.
     pub coefficients: Vec<CoefficientReport>,
     /// Covariance of the coefficients in their order.
     pub covariance: Vec<Vec<f64>>,
@@ -53,8 +68,8 @@ pub struct FewPositionLaw {
     pub degrees_of_freedom: usize,
     /// Probability of a larger `chi_square`; `None` without degrees of freedom.
     pub p_value: Option<f64>,
-    /// Factor of the standard deviations for scatter beyond the standard errors; 1 without any.
-    pub inflation: f64,
+    /// Noise between stops, over which the coefficients are integrated.
+    pub noise: NoiseBetweenStops,
 }
 
 /// A significant term beyond the nominal law.
@@ -92,37 +107,62 @@ pub fn few_position_test(
         .map(|gyro| WeightedStops::of(positions, gyro, &all))
         .collect();
     let mut laws: Vec<Vec<Term>> = data.iter().map(nominal_law).collect();
-    let tests: usize = (0..3).map(|gyro| Term::catalogue(gyro).len()).sum();
+    let between = BetweenStops::of(positions, &laws);
+    let freedom_of_noise = between.freedom(stops, &laws);
     let mut found: Vec<(usize, Term, f64)> = Vec::new();
-    loop {
-        let best = data
-            .iter()
-            .zip(&laws)
-            .flat_map(|(data, law)| candidates(data, law))
-            .max_by(|a, b| a.2.abs().total_cmp(&b.2.abs()));
-        let Some((gyro, term, normal)) = best else {
+    while between.freedom(stops, &laws) >= LEAST_FREEDOM {
+        let Some((gyro, term, p_value)) = most_significant(&between, &data, &laws) else {
             break;
         };
-        let p_value = gyrocal_statistics::p_of_least(two_sided_p(normal), tests as f64);
         if p_value > false_alarm_probability {
             break;
         }
         laws[gyro].push(term);
         found.push((gyro, term, p_value));
     }
-    let findings = found
+    let gyros: Vec<FewPositionLaw> = data
         .iter()
-        .filter_map(|(gyro, term, p_value)| finding(&data[*gyro], &laws[*gyro], *term, *p_value))
-        .collect();
-    let gyros = data
-        .iter()
-        .zip(&laws)
-        .map(|(data, law)| law_report(data, law));
+        .map(|data| law_report(data, &laws, &between))
+        .collect::<Result<_, _>>()?;
+    let findings = found.iter().filter_map(|(gyro, term, p_value)| {
+        let place = laws[*gyro].iter().position(|other| other == term)?;
+        let coefficient = gyros[*gyro].coefficients.get(place)?;
+        Some(FewPositionFinding {
+            effect: coefficient.name.clone(),
+            estimate: coefficient.estimate,
+            sigma: coefficient.sigma,
+            unit: coefficient.unit.clone(),
+            p_value: *p_value,
+            alternatives: alternatives(&data[*gyro], &laws, *term, &between),
+        })
+    });
     Ok(FewPositionReport {
         stops,
-        gyros: gyros.collect::<Result<_, _>>()?,
-        findings,
+        freedom_of_noise,
+        findings: findings.collect(),
+        gyros,
     })
+}
+
+/// The most significant term beyond the laws, with the probability of as large a one in any test of a law without it.
+fn most_significant(
+    between: &BetweenStops,
+    data: &[WeightedStops],
+    laws: &[Vec<Term>],
+) -> Option<(usize, Term, f64)> {
+    let tests: usize = (0..3).map(|gyro| Term::catalogue(gyro).len()).sum();
+    let of_gyro = |data: &WeightedStops| {
+        let terms = open_terms(data, &laws[data.gyro], Term::catalogue(data.gyro));
+        let evidence = between.terms(data.gyro, laws, &terms);
+        let gyro = data.gyro;
+        let pairs = terms.into_iter().zip(evidence);
+        pairs.filter_map(move |(term, evidence)| Some((gyro, term, evidence?.p_value)))
+    };
+    let best = data
+        .iter()
+        .flat_map(of_gyro)
+        .min_by(|a, b| a.2.total_cmp(&b.2));
+    best.map(|(gyro, term, p_value)| (gyro, term, p_of_least(p_value, tests as f64)))
 }
 
 fn refuse_one_position(positions: &Positions) -> Result<(), InstrumentError> {
@@ -189,41 +229,37 @@ fn is_new(data: &WeightedStops, law: &[Term], term: Term) -> bool {
     rest.norm() > SMALLEST_SHARE * data.column(Term::Nominal(0)).norm()
 }
 
-/// Terms beyond a law that the stops determine, in standard deviations.
-fn candidates(data: &WeightedStops, law: &[Term]) -> Vec<(usize, Term, f64)> {
-    Term::catalogue(data.gyro)
-        .into_iter()
+/// Of these terms, those that the stops determine beside a law.
+fn open_terms(
+    data: &WeightedStops,
+    law: &[Term],
+    terms: impl IntoIterator<Item = Term>,
+) -> Vec<Term> {
+    let terms = terms.into_iter();
+    terms
         .filter(|term| !law.contains(term) && is_new(data, law, *term))
-        .filter_map(|term| {
-            let mut with = law.to_vec();
-            with.push(term);
-            let fit = fit(data, &with)?;
-            let place = with.len() - 1;
-            let sigma = fit.cofactors[(place, place)].sqrt();
-            Some((data.gyro, term, fit.estimates[place] / sigma))
-        })
         .collect()
 }
 
-/// A fit that may use every stop.
-fn fit(data: &WeightedStops, terms: &[Term]) -> Option<Fit> {
-    Fit::exact(&data.columns(terms), &data.rates)
-}
-
-fn law_report(data: &WeightedStops, law: &[Term]) -> Result<FewPositionLaw, InstrumentError> {
-    let fit = fit(data, law).ok_or_else(|| too_few(data.len()))?;
+fn law_report(
+    data: &WeightedStops,
+    laws: &[Vec<Term>],
+    between: &BetweenStops,
+) -> Result<FewPositionLaw, InstrumentError> {
+    let law = &laws[data.gyro];
+    // The fit may use every stop.
+    let fit = Fit::exact(&data.columns(law), &data.rates).ok_or_else(|| too_few(data.len()))?;
+    let integrated = between
+        .law(data.gyro, laws)
+        .ok_or_else(|| too_few(data.len()))?;
     let freedom = data.len() - law.len();
     let p_value =
         (freedom > 0).then(|| chi_square_tail(fit.chi_square, freedom as f64).unwrap_or(f64::NAN));
-    let inflation = match p_value {
-        Some(p) if p < EXPLAINED => (fit.chi_square / freedom as f64).sqrt(),
-        _ => 1.0,
-    };
-    let scale = inflation * inflation;
+    let covariance = &integrated.covariance;
     let coefficients = law.iter().enumerate().map(|(i, term)| CoefficientReport {
         name: term.id(data.gyro).to_owned(),
-        estimate: fit.estimates[i],
-        sigma: inflation * fit.cofactors[(i, i)].sqrt(),
+        estimate: integrated.estimates[i],
+        sigma: covariance[(i, i)].sqrt(),
         unit: term.unit(data.gyro).to_owned(),
     });
     let undetermined = Term::NOMINAL
@@ -233,14 +269,9 @@ fn law_report(data: &WeightedStops, law: &[Term]) -> Result<FewPositionLaw, Inst
     Ok(FewPositionLaw {
         gyro: RATES[data.gyro].id.to_owned(),
         coefficients: coefficients.collect(),
-        covariance: (0..law.len())
-            .map(|row| {
-                fit.cofactors
-                    .row(row)
-                    .iter()
-                    .map(|value| scale * value)
-                    .collect()
-            })
+        covariance: covariance
+            .row_iter()
+            .map(|row| row.iter().copied().collect())
             .collect(),
         undetermined: undetermined
             .map(|term| term.id(data.gyro).to_owned())
@@ -248,37 +279,32 @@ fn law_report(data: &WeightedStops, law: &[Term]) -> Result<FewPositionLaw, Inst
         chi_square: fit.chi_square,
         degrees_of_freedom: freedom,
         p_value,
-        inflation,
+        noise: integrated.noise,
     })
 }
 
-fn finding(
+/// Terms that explain the stops as well in the place of one.
+fn alternatives(
     data: &WeightedStops,
-    law: &[Term],
+    laws: &[Vec<Term>],
     term: Term,
-    p_value: f64,
-) -> Option<FewPositionFinding> {
-    let place = law.iter().position(|other| *other == term)?;
-    let report = law_report(data, law).ok()?;
-    let coefficient = report.coefficients.get(place)?;
-    let without: Vec<Term> = law.iter().copied().filter(|other| *other != term).collect();
+    between: &BetweenStops,
+) -> Vec<String> {
+    let mut without = laws.to_vec();
+    without[data.gyro].retain(|other| *other != term);
     let free = Term::NOMINAL.into_iter().chain(Term::catalogue(data.gyro));
-    let alternatives = free
-        .filter(|other| !law.contains(other) && is_new(data, &without, *other))
-        .filter(|other| {
-            let mut with = without.clone();
-            with.push(*other);
-            fit(data, &with)
-                .is_some_and(|fit| 0.5 * (fit.chi_square - report.chi_square) <= LARGEST_DEFICIT)
-        });
-    Some(FewPositionFinding {
-        effect: coefficient.name.clone(),
-        estimate: coefficient.estimate,
-        sigma: coefficient.sigma,
-        unit: coefficient.unit.clone(),
-        p_value,
-        alternatives: alternatives
-            .map(|other| other.id(data.gyro).to_owned())
-            .collect(),
-    })
+    let mut terms = open_terms(data, &without[data.gyro], free);
+    terms.retain(|other| *other != term);
+    terms.insert(0, term);
+    let evidence = between.terms(data.gyro, &without, &terms);
+    let likelihood = |one: &Option<_>| one.as_ref().map(|one: &TermEvidence| one.log_likelihood);
+    let own = evidence
+        .first()
+        .and_then(likelihood)
+        .unwrap_or(f64::NEG_INFINITY);
+    let pairs = terms.iter().zip(&evidence).skip(1);
+    pairs
+        .filter(|(_, one)| likelihood(one).is_some_and(|other| own - other <= LARGEST_DEFICIT))
+        .map(|(other, _)| other.id(data.gyro).to_owned())
+        .collect()
 }

@@ -15,6 +15,12 @@ pub struct Positions {
     pub rate_deg_per_h: Vec<[f64; 3]>,
     /// Standard errors of the rates.
     pub sigma_deg_per_h: Vec<[f64; 3]>,
+    /// The part of the standard errors that comes from an unknown heading.
+    pub heading_sigma_deg_per_h: Vec<[f64; 3]>,
+    /// Rates over equal parts of each stop, less that of the stop; none of a stop too short.
+    pub parts_deg_per_h: Vec<Vec<[f64; 3]>>,
+    /// Duration of each stop.
+    pub duration_s: Vec<f64>,
     /// Specific force along the axes of the accelerometers.
     pub force_g: Vec<[f64; 3]>,
     /// Number of the log of each stop, from zero.
@@ -68,19 +74,47 @@ impl Positions {
                 stop.gyro[gyro] * deg_per_h[gyro] - vertical * force_g[gyro]
             })
         };
+        let heading = |force_g: &[f64; 3]| {
+            force_g.map(|along| horizontal * (0.5 * (1.0 - along * along).max(0.0)).sqrt())
+        };
         let sigma = |(stop, force_g): (&StopMeans, &[f64; 3])| {
+            let heading = heading(force_g);
             core::array::from_fn(|gyro| {
-                let across = (1.0 - force_g[gyro].powi(2)).max(0.0);
                 let noise = stop.gyro_sigma[gyro] * deg_per_h[gyro];
-                (noise.powi(2) + 0.5 * across * horizontal.powi(2)).sqrt()
+                noise.hypot(heading[gyro])
             })
+        };
+        let parts = |stop: &StopMeans| {
+            let scaled =
+                |part: &[f64; 3]| core::array::from_fn(|gyro| part[gyro] * deg_per_h[gyro]);
+            stop.gyro_parts.iter().map(scaled).collect()
         };
         Self {
             time_s: stops.iter().map(|stop| stop.time_s).collect(),
             rate_deg_per_h: stops.iter().zip(&force_g).map(rate).collect(),
             sigma_deg_per_h: stops.iter().zip(&force_g).map(sigma).collect(),
+            heading_sigma_deg_per_h: force_g.iter().map(heading).collect(),
+            parts_deg_per_h: stops.iter().map(parts).collect(),
+            duration_s: stops.iter().map(|stop| stop.to_s - stop.from_s).collect(),
             log: vec![0; stops.len()],
             force_g,
+        }
+    }
+
+    /// Some of the stops.
+    pub(super) fn only(&self, which: &[usize]) -> Self {
+        fn pick<T: Clone>(values: &[T], which: &[usize]) -> Vec<T> {
+            which.iter().map(|stop| values[*stop].clone()).collect()
+        }
+        Self {
+            time_s: pick(&self.time_s, which),
+            rate_deg_per_h: pick(&self.rate_deg_per_h, which),
+            sigma_deg_per_h: pick(&self.sigma_deg_per_h, which),
+            heading_sigma_deg_per_h: pick(&self.heading_sigma_deg_per_h, which),
+            parts_deg_per_h: pick(&self.parts_deg_per_h, which),
+            duration_s: pick(&self.duration_s, which),
+            force_g: pick(&self.force_g, which),
+            log: pick(&self.log, which),
         }
     }
 

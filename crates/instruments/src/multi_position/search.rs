@@ -2,8 +2,10 @@
 
 use chacha20::ChaCha12Rng;
 use chacha20::rand_core::{Rng, SeedableRng};
+use gyrocal_statistics::p_of_least;
 use nalgebra::{DMatrix, DVector};
 
+use super::between_stops::BetweenStops;
 use super::positions::Positions;
 use super::regression::WeightedStops;
 use super::terms::Term;
@@ -141,7 +143,9 @@ impl Law {
 ///
 /// The statistic of a step is the maximum F over all gyros and terms. Its null distribution is that of
 /// the same maximum after the residuals of the current laws are permuted among the stops, in the same
-/// order for all gyros (Freedman and Lane 1983), so that p-values are family-wise. `which` are the stops
+/// order for all gyros (Freedman and Lane 1983), so that p-values are family-wise. Stops of a walk are not
+/// exchangeable in time: a ramp has to be significant beside walks and flicker too, integrated over their levels, and
+/// its p-value is the larger one. `which` are the stops
 /// that are used, weighted with the excess scatter of the current law: with the standard errors alone
 /// a long stop would dominate where the law is wrong.
 #[must_use]
@@ -169,9 +173,16 @@ pub fn search(
         let Some((gyro, (term, f))) = best else {
             return steps;
         };
-        let Some(p_value) = significance(&laws, f, settings, &mut generator) else {
+        let Some(mut p_value) = significance(&laws, f, settings, &mut generator) else {
             return steps;
         };
+        if term == Term::Ramp {
+            p_value = p_value.max(beside_walks(&positions.only(which), &laws, gyro));
+            if p_value > settings.false_alarm_probability {
+                laws[gyro].candidates.retain(|(other, _)| *other != term);
+                continue;
+            }
+        }
         steps.push(SearchStep {
             gyro,
             term,
@@ -182,6 +193,19 @@ pub fn search(
         terms.push(term);
         laws[gyro] = Law::new(&laws[gyro].data, terms);
     }
+}
+
+/// Family-wise p-value of the ramp of a gyro in noise that may walk between stops.
+fn beside_walks(positions: &Positions, laws: &[Law], gyro: usize) -> f64 {
+    let terms: Vec<Vec<Term>> = laws.iter().map(|law| law.terms.clone()).collect();
+    let tests: usize = laws.iter().map(|law| law.candidates.len()).sum();
+    let between = BetweenStops::of(positions, &terms);
+    let evidence = between
+        .terms(gyro, &terms, &[Term::Ramp])
+        .into_iter()
+        .flatten()
+        .next();
+    evidence.map_or(1.0, |own| p_of_least(own.p_value, tests as f64))
 }
 
 /// Family-wise p-value of `f`; `None` if it exceeds the probability of a false alarm.

@@ -10,6 +10,7 @@ use core::f64::consts::PI;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use super::blocks::Blocks;
+use crate::interval_noise::{flicker, walk};
 
 /// Parts of the noise, in the order of [`Variances`].
 pub(super) const PARTS: usize = 5;
@@ -235,6 +236,7 @@ pub(super) fn first_variances(logs: &[Blocks], rates: &DVector<f64>) -> Variance
 /// Covariance of the means over blocks `i` and `j` of `count`, for a coefficient of one.
 fn covariance(part: usize, i: usize, j: usize, count: usize, block_s: f64) -> f64 {
     let lag = i.abs_diff(j);
+    let [one, other] = [i, j].map(|block| [block as f64, block as f64 + 1.0]);
     match part {
         0 => {
             if lag == 0 {
@@ -249,26 +251,8 @@ fn covariance(part: usize, i: usize, j: usize, count: usize, block_s: f64) -> f6
             _ => 0.0,
         },
         // The density B² / (2 π f) begins at about the inverse of the length of the log: slower parts are bias.
-        2 => ((count as f64).ln() + 1.0 + flicker(lag)) / PI,
+        2 => ((count as f64).ln() + 1.0 + flicker(one, other)) / PI,
         BETWEEN_LOGS => 1.0,
-        _ => {
-            let before = i.min(j) as f64;
-            block_s
-                * if lag == 0 {
-                    before + 1.0 / 3.0
-                } else {
-                    before + 0.5
-                }
-        }
+        _ => block_s * walk(one, other),
     }
-}
-
-/// Mean of -ln of the distance of two points of two intervals of length one, `lag` apart.
-fn flicker(lag: usize) -> f64 {
-    let integral = |x: f64| match x {
-        0.0 => 0.0,
-        x => 0.5 * x * x * x.ln() - 0.75 * x * x,
-    };
-    let lag = lag as f64;
-    2.0 * integral(lag) - integral(lag + 1.0) - integral((lag - 1.0).abs())
 }

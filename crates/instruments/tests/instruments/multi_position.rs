@@ -24,6 +24,9 @@ fn positions(seed: u64, stops: usize, law: impl Fn(usize, [f64; 3]) -> f64) -> P
         time_s: (0..stops).map(|stop| 10.0 * stop as f64).collect(),
         rate_deg_per_h: force_g.iter().map(&mut rate).collect(),
         sigma_deg_per_h: vec![[SIGMA; 3]; stops],
+        heading_sigma_deg_per_h: vec![[0.0; 3]; stops],
+        parts_deg_per_h: vec![Vec::new(); stops],
+        duration_s: vec![5.0; stops],
         log: vec![0; stops],
         force_g,
     }
@@ -53,6 +56,27 @@ fn nothing_is_found_in_a_nominal_instrument_more_often_than_chance_allows() {
         .count();
     // Binomial with 200 draws of 0.05: 10 expected, 2 to 21 hold 99.9 %.
     assert!((2..=21).contains(&alarms), "{alarms}");
+}
+
+/// A bias that walks by its standard error from stop to stop is no ramp: permutations of the stops find one in six of ten.
+#[test]
+fn a_walk_is_no_ramp() {
+    let settings = SearchSettings::default();
+    let ramps = (0..40).filter(|seed| {
+        let mut walks = Noise::of_seed(1000 + seed);
+        let mut positions = positions(*seed, 24, nominal);
+        let mut bias = [0.0; 3];
+        for rate in &mut positions.rate_deg_per_h {
+            for gyro in 0..3 {
+                bias[gyro] += 50.0 * walks.normal();
+                rate[gyro] += bias[gyro];
+            }
+        }
+        let steps = search(&positions, &all(&positions), &settings);
+        steps.iter().any(|step| step.term == Term::Ramp)
+    });
+    // One of a hundred is promised; three of forty have a chance of 1 %.
+    assert!(ramps.count() < 3);
 }
 
 #[test]
@@ -209,6 +233,7 @@ fn earth_rate_is_taken_off_where_latitude_is_known() {
             time_s: 0.0,
             gyro: earth.into(),
             gyro_sigma: [0.1; 3],
+            gyro_parts: Vec::new(),
             accel: up.into(),
             accel_sigma: [1e-5; 3],
         }

@@ -23,11 +23,17 @@ pub(super) fn first(answer: &TumbleAnswer<'_>) -> Screen {
     if let Some(report) = &result.few_positions {
         screen = few_positions(report);
     }
-    let words = format!(
-        "{} of sound instruments would show any term by chance",
-        format::percent(answer.false_alarm)
-    );
-    screen.fact("how sure", words);
+    if result
+        .few_positions
+        .as_ref()
+        .is_none_or(FewPositionReport::tells_noise)
+    {
+        let words = format!(
+            "{} of sound instruments would show any term by chance",
+            format::percent(answer.false_alarm)
+        );
+        screen.fact("how sure", words);
+    }
     screen.fact(
         "not told",
         match answer.prepared.instrument.latitude_deg {
@@ -136,7 +142,14 @@ fn many(report: &MultiPositionReport) -> Screen {
 }
 
 fn few_positions(report: &FewPositionReport) -> Screen {
-    let mut screen = verdict(&terms!(report, |name| &**name));
+    let mut screen = match report.tells_noise() {
+        true => verdict(&terms!(report, |name| &**name)),
+        false => Screen::new(
+            Standing::Doubtful,
+            "NOT TESTED",
+            "too few stops to tell a term from the noise between them",
+        ),
+    };
     for gyro in &report.gyros {
         let law = gyro.coefficients.iter().take(NAMES_SHOWN).map(|one| {
             let size = format::with_sigma(one.estimate, one.sigma);
@@ -147,6 +160,28 @@ fn few_positions(report: &FewPositionReport) -> Screen {
         if !open.is_empty() {
             screen.fact("not determined", few(&open, NAMES_SHOWN));
         }
+    }
+    let between = report.gyros.iter().map(|gyro| {
+        let [median, most] = gyro
+            .noise
+            .scatter_deg_per_h
+            .map(|level| format::short(level, 2));
+        format!("{} {median} (at most {most})", gyro.gyro)
+    });
+    let between = between.collect::<Vec<_>>().join(", ");
+    screen.fact(
+        "between stops",
+        format!("scatter beyond the noise of a stop, deg/h: {between}"),
+    );
+    if !report.tells_noise() {
+        let left = counted(report.freedom_of_noise, "degree");
+        screen.fact(
+            "not tested",
+            format!(
+                "{left} of freedom tell the noise between stops, a term needs three: repeat positions, each repeat \
+                 gives one to each gyro"
+            ),
+        );
     }
     screen
 }

@@ -1,0 +1,125 @@
+//! The grid of levels of noise between stops.
+
+use gyrocal_statistics::math::{exp, ln};
+
+use super::between_stops::ln_sum;
+
+/// Kinds of noise between stops: scatter, flicker, walk.
+pub(super) const DIMENSIONS: usize = 3;
+
+/// Levels of scatter, flicker and walk, in standard errors of a stop.
+pub(super) type Levels = [f64; DIMENSIONS];
+
+/// Least levels that are not zero: half a standard error of a stop widens no sigma by more than an eighth.
+const LEAST: f64 = 0.5;
+
+/// Ratios of successive levels of scatter, flicker and walk. Twenty stops of three gyros tell the logarithm of their
+/// scatter to an eighth; the levels of the two others are told less well, and grids of three to a decade gave the same
+/// share of false terms.
+const RATIOS: Levels = [1.2, 2.0, 2.0];
+
+/// Spread of the levels of the gyros of one unit, as a standard deviation of their logarithm, and the share of gyros
+/// whose levels have nothing to do with those of the others.
+const SPREAD: f64 = 0.35;
+const APART: f64 = 0.2;
+
+/// All combinations of levels.
+pub(super) struct Grid {
+    axes: [Vec<f64>; DIMENSIONS],
+    /// Probability of each level of one gyro given that which is common to the gyros: row by common level.
+    kernels: [Vec<Vec<f64>>; DIMENSIONS],
+}
+
+impl Grid {
+    /// Up to a level, with scatter or without.
+    pub(super) fn new(largest: f64, has_scatter: bool) -> Self {
+        let axes = core::array::from_fn(|dimension| {
+            let mut axis = vec![0.0];
+            if dimension == 0 && !has_scatter {
+                return axis;
+            }
+            let mut level = LEAST;
+            while level <= largest.max(LEAST) {
+                axis.push(level);
+                level *= RATIOS[dimension];
+            }
+            axis
+        });
+        let kernels = core::array::from_fn(|dimension| kernel(&axes[dimension], RATIOS[dimension]));
+        Self { axes, kernels }
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.axes.iter().map(Vec::len).product()
+    }
+
+    /// All combinations, the last dimension fastest.
+    pub(super) fn levels(&self) -> impl Iterator<Item = Levels> + '_ {
+        let [scatter, flicker, walk] = &self.axes;
+        scatter.iter().flat_map(move |scatter| {
+            let pairs = flicker
+                .iter()
+                .flat_map(|flicker| walk.iter().map(|walk| [*flicker, *walk]));
+            pairs.map(|[flicker, walk]| [*scatter, flicker, walk])
+        })
+    }
+
+    /// From logarithms over the levels of one gyro to those over the levels that are common to the gyros, or back:
+    /// the levels of a gyro are near the common ones, or anywhere.
+    pub(super) fn shared(&self, logs: &[f64]) -> Vec<f64> {
+        let largest = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let mut near: Vec<f64> = logs.iter().map(|one| exp(one - largest)).collect();
+        let anywhere = exp(ln_sum(logs) - largest) / self.len() as f64;
+        let mut stride = self.len();
+        for (axis, kernel) in self.axes.iter().zip(&self.kernels) {
+            let count = axis.len();
+            stride /= count;
+            let mut moved = vec![0.0; near.len()];
+            for (place, sum) in moved.iter_mut().enumerate() {
+                let own = place / stride % count;
+                let first = place - own * stride;
+                for (other, share) in kernel[own].iter().enumerate() {
+                    *sum += share * near[first + other * stride];
+                }
+            }
+            near = moved;
+        }
+        let mixed = near
+            .iter()
+            .map(|one| (1.0 - APART) * one + APART * anywhere);
+        mixed.map(|one| largest + ln(one)).collect()
+    }
+
+    /// The level of one kind that a share of the weights does not exceed.
+    pub(super) fn quantile(&self, weights: &[f64], dimension: usize, share: f64) -> f64 {
+        let axis = &self.axes[dimension];
+        let mut sums = vec![0.0; axis.len()];
+        let stride: usize = self.axes[dimension + 1..].iter().map(Vec::len).product();
+        for (place, weight) in weights.iter().enumerate() {
+            sums[place / stride % axis.len()] += weight;
+        }
+        let mut below = 0.0;
+        for (level, sum) in axis.iter().zip(&sums) {
+            below += sum;
+            if below >= share {
+                return *level;
+            }
+        }
+        axis.last().copied().unwrap_or(0.0)
+    }
+}
+
+/// Probability of each level of an axis given each common one. Zero counts as one step below the least.
+fn kernel(axis: &[f64], ratio: f64) -> Vec<Vec<f64>> {
+    let logarithm = |level: f64| ln(if level > 0.0 { level } else { LEAST / ratio });
+    let row = |common: &f64| {
+        let normal = |level: &f64| {
+            let off = (logarithm(*level) - logarithm(*common)) / SPREAD;
+            exp(-0.5 * off * off)
+        };
+        let row: Vec<f64> = axis.iter().map(normal).collect();
+        let sum: f64 = row.iter().sum();
+        row.into_iter().map(|one| one / sum).collect()
+    };
+    axis.iter().map(row).collect()
+}

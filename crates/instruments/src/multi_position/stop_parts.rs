@@ -1,0 +1,204 @@
+//! Stops in parts: the rates of one gyro with the covariance of its noise within and between stops.
+
+use gyrocal_statistics::math::ln;
+use nalgebra::{DMatrix, DVector};
+
+use super::levels::Levels;
+use super::positions::Positions;
+use super::regression::Fit;
+use super::terms::{Term, response};
+use crate::interval_noise::{flicker, walk};
+
+/// Most parts of all stops together: a covariance is factored at each level.
+const MOST_PARTS: usize = 64;
+
+/// Logarithm of the longest time of the flicker over the duration of a test.
+const BEYOND: f64 = 3.0;
+
+/// Least duration of a part of a stop \[s\], where the instants of a stop are not known.
+const SHORTEST_S: f64 = 1e-3;
+
+/// Rates of one gyro in parts of its stops.
+pub(super) struct StopParts {
+    pub(super) terms: Vec<Term>,
+    /// Root mean square of the standard errors of the stops \[deg/h\].
+    pub(super) unit_deg_per_h: f64,
+    rates: DVector<f64>,
+    /// Rate of each part per unit of each term.
+    by_terms: DMatrix<f64>,
+    /// Stop and log of each part.
+    stop: Vec<usize>,
+    log: Vec<usize>,
+    /// Variance of the mean of a part by fast noise, and that of its stop by the heading.
+    white: Vec<f64>,
+    heading: Vec<f64>,
+    flicker: DMatrix<f64>,
+    walk: DMatrix<f64>,
+}
+
+impl StopParts {
+    /// One gyro at all stops.
+    pub(super) fn of(positions: &Positions, gyro: usize) -> Self {
+        let stops = positions.time_s.len();
+        let has_parts = has_parts(positions);
+        let mut terms = Term::NOMINAL.to_vec();
+        terms.extend(Term::catalogue(gyro));
+        // Times are those of the middle of each stop, here after half of the first.
+        let start_s = positions
+            .time_s
+            .iter()
+            .copied()
+            .fold(f64::INFINITY, f64::min);
+        let mut spans = Vec::new();
+        let (mut rates, mut stop, mut log) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut white, mut heading, mut rows) = (Vec::new(), Vec::new(), Vec::new());
+        for number in 0..stops {
+            let own = if has_parts {
+                &positions.parts_deg_per_h[number][..]
+            } else {
+                &[]
+            };
+            let count = own.len().max(1);
+            let long_s = positions.duration_s[number].max(SHORTEST_S * count as f64);
+            let each_s = long_s / count as f64;
+            for part in 0..count {
+                let from_s = positions.time_s[number] - start_s + each_s * part as f64;
+                spans.push([from_s, from_s + each_s]);
+                let off = own.get(part).map_or(0.0, |off| off[gyro]);
+                rates.push(positions.rate_deg_per_h[number][gyro] + off);
+                let [total, by_heading] = [
+                    &positions.sigma_deg_per_h,
+                    &positions.heading_sigma_deg_per_h,
+                ]
+                .map(|sigma| sigma[number][gyro].powi(2));
+                white.push((total - by_heading) * count as f64);
+                heading.push(by_heading);
+                stop.push(number);
+                log.push(positions.log[number]);
+                rows.push(response(
+                    gyro,
+                    &positions.force_g[number],
+                    from_s + 0.5 * each_s,
+                ));
+            }
+        }
+        let unit = positions.rms_sigma_deg_per_h(gyro);
+        let variance = unit * unit;
+        let spacing_s = spacing_s(positions);
+        // Slower noise than that of the test is bias, which takes this constant up.
+        let end_s = spans
+            .iter()
+            .map(|span: &[f64; 2]| span[1])
+            .fold(SHORTEST_S, f64::max);
+        let constant = ln(end_s) + BEYOND;
+        Self {
+            by_terms: DMatrix::from_fn(rows.len(), terms.len(), |row, term| {
+                rows[row][terms[term].parameter(gyro)]
+            }),
+            terms,
+            unit_deg_per_h: unit,
+            flicker: of_pairs(&spans, |one, other| {
+                variance * (constant + flicker(one, other)) / core::f64::consts::PI
+            }),
+            walk: of_pairs(&spans, |one, other| variance * walk(one, other) / spacing_s),
+            rates: DVector::from_vec(rates),
+            stop,
+            log,
+            white,
+            heading,
+        }
+    }
+
+    pub(super) fn stops(&self) -> usize {
+        self.stop.last().map_or(0, |last| last + 1)
+    }
+
+    /// Rates, terms, and biases of the logs after the first.
+    pub(super) fn columns(&self, biases: usize) -> DMatrix<f64> {
+        let terms = self.terms.len();
+        DMatrix::from_fn(
+            self.rates.len(),
+            1 + terms + biases,
+            |row, column| match column {
+                0 => self.rates[row],
+                _ if column <= terms => self.by_terms[(row, column - 1)],
+                _ => f64::from(u8::from(self.log[row] == column - terms)),
+            },
+        )
+    }
+
+    /// Covariance of the rates at some levels \[deg²/h²\].
+    pub(super) fn covariance(&self, [scatter, flicker, walk]: Levels) -> DMatrix<f64> {
+        let squared = (self.unit_deg_per_h * scatter).powi(2);
+        let mut covariance = &self.flicker * (flicker * flicker) + &self.walk * (walk * walk);
+        for (i, own) in self.stop.iter().enumerate() {
+            covariance[(i, i)] += self.white[i];
+            for (j, other) in self.stop.iter().enumerate() {
+                if own == other {
+                    covariance[(i, j)] += squared + self.heading[i];
+                }
+            }
+        }
+        covariance
+    }
+
+    /// The largest level that the grid reaches: above the scatter that a law leaves, the further the fewer degrees of
+    /// freedom tell it.
+    pub(super) fn largest_level(&self, law: &[Term], biases: usize, freedom: usize) -> f64 {
+        let columns = self.columns(biases);
+        let weights = self.white.iter().zip(&self.heading);
+        let weights: Vec<f64> = weights
+            .map(|(white, heading)| (white + heading).sqrt().recip())
+            .collect();
+        let place = |term: &Term| self.terms.iter().position(|one| one == term);
+        let mut chosen: Vec<usize> = law.iter().filter_map(place).map(|at| at + 1).collect();
+        chosen.extend(1 + self.terms.len()..columns.ncols());
+        let whitened = DMatrix::from_fn(columns.nrows(), chosen.len(), |i, j| {
+            weights[i] * columns[(i, chosen[j])]
+        });
+        let rates = DVector::from_fn(columns.nrows(), |i, _| weights[i] * self.rates[i]);
+        let Some(fit) = Fit::exact(&whitened, &rates) else {
+            return 0.0;
+        };
+        // Without stops to spare the parts within them alone tell a level.
+        let spare = match freedom {
+            0 => columns.nrows() - chosen.len(),
+            freedom => freedom,
+        };
+        if spare == 0 {
+            return 0.0;
+        }
+        let spare = spare as f64;
+        (fit.chi_square / spare).sqrt() * (2.0 + 20.0 / spare)
+    }
+}
+
+/// Whether stops are taken in parts: where all of them together are few enough.
+fn has_parts(positions: &Positions) -> bool {
+    positions
+        .parts_deg_per_h
+        .iter()
+        .map(Vec::len)
+        .sum::<usize>()
+        <= MOST_PARTS
+}
+
+/// Mean time from stop to stop.
+fn spacing_s(positions: &Positions) -> f64 {
+    let times = &positions.time_s;
+    let [first, last] = [
+        times.iter().copied().fold(f64::INFINITY, f64::min),
+        times.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+    ];
+    let longest = positions
+        .duration_s
+        .iter()
+        .copied()
+        .fold(SHORTEST_S, f64::max);
+    ((last - first) / (times.len().max(2) - 1) as f64).max(longest)
+}
+
+/// Covariances of all pairs of parts.
+fn of_pairs(spans: &[[f64; 2]], of: impl Fn([f64; 2], [f64; 2]) -> f64) -> DMatrix<f64> {
+    DMatrix::from_fn(spans.len(), spans.len(), |i, j| of(spans[i], spans[j]))
+}
