@@ -7,6 +7,7 @@ use gyrocal_statistics::allan::{
 };
 use serde::Serialize;
 
+use crate::bad_samples::{BadSample, WithoutBadSamples};
 use crate::columns::read_columns;
 use crate::error::{InstrumentError, Unfit};
 use crate::log::Log;
@@ -35,6 +36,22 @@ pub struct AllanColumn {
     pub points: Vec<AllanColumnPoint>,
     /// Parts of the noise; `None` with too few averaging times for a fit.
     pub noise: Option<NoiseFit>,
+    /// Samples that no noise explains, which deviations and parts leave out; `None` without any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub left_out: Option<LeftOut>,
+}
+
+/// Samples that no noise explains: more than eight robust standard deviations from the median of those about them, and at
+/// most one of a hundred. The median takes their place.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct LeftOut {
+    /// Number of these samples.
+    pub count: usize,
+    /// The first hundred of them.
+    pub samples: Vec<BadSample>,
+    /// Parts of the noise with these samples among the others; `None` with too few averaging times for a fit.
+    pub noise_with_them: Option<NoiseFit>,
 }
 
 /// Result of `gyrocal allan`.
@@ -117,26 +134,47 @@ fn column(
     if values.iter().any(|value| !value.is_finite()) {
         return Err(overflow(name, settings.scale));
     }
-    let averaging = octaves(values.len().max(3));
-    let overlapping = allan_deviation(&values, interval_s, &averaging, settings.confidence)?;
+    let cleaned = WithoutBadSamples::of(&values);
+    let (points, noise) = deviations(&cleaned.values, interval_s, settings)?;
+    let left_out = match cleaned.places.len() {
+        0 => None,
+        count => Some(LeftOut {
+            count,
+            samples: cleaned.told(&values, interval_s),
+            noise_with_them: deviations(&values, interval_s, settings)?.1,
+        }),
+    };
+    Ok(AllanColumn {
+        name: name.to_owned(),
+        noise,
+        points,
+        left_out,
+    })
+}
+
+/// Deviations of values, and the parts of their noise.
+fn deviations(
+    values: &[f64],
+    interval_s: f64,
+    settings: &AllanSettings,
+) -> Result<(Vec<AllanColumnPoint>, Option<NoiseFit>), InstrumentError> {
     let confidence = settings.confidence;
+    let averaging = octaves(values.len().max(3));
+    let overlapping = allan_deviation(values, interval_s, &averaging, confidence)?;
     let points = match settings.estimator {
-        AllanEstimator::Total => total_deviation(&values, interval_s, &averaging, confidence)?,
+        AllanEstimator::Total => total_deviation(values, interval_s, &averaging, confidence)?,
         AllanEstimator::Hadamard => {
             let most = values.len() / 4;
             let shorter: Vec<usize> = averaging
                 .into_iter()
                 .filter(|count| *count <= most)
                 .collect();
-            hadamard_deviation(&values, interval_s, &shorter, confidence)?
+            hadamard_deviation(values, interval_s, &shorter, confidence)?
         }
         _ => overlapping.clone(),
     };
-    Ok(AllanColumn {
-        name: name.to_owned(),
-        noise: fit_noise(&overlapping, values.len()).ok(),
-        points: points.iter().map(AllanColumnPoint::from).collect(),
-    })
+    let noise = fit_noise(&overlapping, values.len()).ok();
+    Ok((points.iter().map(AllanColumnPoint::from).collect(), noise))
 }
 
 /// The same of the gyros of a log in the unit of its description, with its clock; `names` are those of its

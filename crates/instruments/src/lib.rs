@@ -53,6 +53,7 @@
 mod accel_from_norm;
 mod accel_from_positions;
 mod allan_analysis;
+mod bad_samples;
 mod binary_file;
 mod cell;
 mod clock;
@@ -92,8 +93,9 @@ mod typed_file;
 pub use accel_from_norm::{AccelCalibration, accel_from_norm, refuse_wrong_norm};
 pub use accel_from_positions::{AccelCoefficient, AccelErrors, accel_from_positions};
 pub use allan_analysis::{
-    AllanColumn, AllanColumnPoint, AllanReport, AllanSettings, allan_columns, allan_log,
+    AllanColumn, AllanColumnPoint, AllanReport, AllanSettings, LeftOut, allan_columns, allan_log,
 };
+pub use bad_samples::BadSample;
 pub use clock::Clock;
 pub use columns::{Columns, read_columns, read_described};
 pub use description::Description;

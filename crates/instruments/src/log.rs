@@ -1,5 +1,7 @@
 //! Logs of three gyros and three accelerometers.
 
+mod stamps;
+
 use std::path::Path;
 
 use gyrocal_record::{InputErrorKind, SourceText};
@@ -234,52 +236,6 @@ impl Log {
             time_s: at_s,
             ..self
         }
-    }
-
-    /// Refuses stamps that repeat, and intervals that are no jitter.
-    fn refuse_long_gaps(&self) -> Result<(), InstrumentError> {
-        let longest_s = LONGEST_JITTER * self.interval_s;
-        if self.time_s.windows(2).any(|pair| pair[1] <= pair[0]) {
-            return Err(InstrumentError::unfit(
-                Unfit::Jitter,
-                "time stamps that repeat",
-                "times that rise",
-                "stamps of packets are no times of samples: leave out `jitter`, or give `rate_hz` in \
-                 place of the time column",
-            ));
-        }
-        match self
-            .time_s
-            .windows(2)
-            .position(|pair| pair[1] - pair[0] > longest_s)
-        {
-            Some(at) => Err(self.gap([at, at + 1])),
-            None => Ok(()),
-        }
-    }
-
-    /// The error of missing samples among those between two numbers.
-    fn gap(&self, [from, to]: [usize; 2]) -> InstrumentError {
-        let interval_s = |at: &usize| self.time_s[at + 1] - self.time_s[*at];
-        let longer = |a: &usize, b: &usize| interval_s(a).total_cmp(&interval_s(b));
-        let first = (from..to).max_by(longer).unwrap_or(from);
-        let gaps = self
-            .time_s
-            .windows(2)
-            .filter(|pair| pair[1] - pair[0] > GAP * self.interval_s)
-            .count();
-        InstrumentError::unfit(
-            Unfit::Gap,
-            format!(
-                "{gaps} gap(s) in the time stamps, the longest there of {:.4} s after {} s",
-                interval_s(&first),
-                self.time_s[first]
-            ),
-            format!("a sample every {:.4} s", self.interval_s),
-            "cut the log at the gap, since rotation that was not recorded cannot be integrated; if \
-             the clock is wrong and not the samples, give `rate_hz` in place of the time column; if the \
-             sensor samples at such intervals, `jitter = \"use\"` or `\"resample\"`",
-        )
     }
 }
 

@@ -29,10 +29,17 @@ pub fn of_allan(manifest: &Manifest, report: &AllanReport, clock: Option<&str>) 
         vec![Item::Chart(chart(report))],
     );
     let unit = &report.unit;
-    let parts = report
-        .columns
-        .iter()
-        .flat_map(|column| parts(&column.name, column.noise.as_ref(), unit));
+    let parts = report.columns.iter().flat_map(|column| {
+        let mut items = parts(&column.name, column.noise.as_ref(), unit);
+        items.extend(column.left_out.as_ref().map(|left_out| {
+            let words = screen::bad_samples(left_out, unit);
+            Item::text(format!(
+                "{}: left out, as no noise explains it, {words}.",
+                column.name
+            ))
+        }));
+        items
+    });
     let parts = section(
         "parts",
         "Parts of the noise",

@@ -433,3 +433,21 @@ fn saturated_gyros_are_told_with_the_line_where_they_begin_to_be() {
     )
     .unwrap();
 }
+
+#[test]
+fn rows_that_repeat_are_told_as_such() {
+    // From row 100 on each sample is there twice.
+    let twice = |row: usize| regular(if row < 100 { row } else { 50 + row / 2 });
+    let (kind, message) = refused(&text(twice), DESCRIPTION);
+    assert_eq!(kind, Some(Unfit::Jitter), "{message}");
+    assert!(
+        message.contains("50 rows with the stamp and the values"),
+        "{message}"
+    );
+    assert!(message.contains("in row 102 at 1 s"), "{message}");
+    // A rate that changes has no gap either.
+    let slower = |row: usize| regular(row) + 2.0 * row.saturating_sub(100) as f64;
+    let (kind, message) = refused(&text(slower), DESCRIPTION);
+    assert_eq!(kind, Some(Unfit::Jitter), "{message}");
+    assert!(message.contains("no steady clock"), "{message}");
+}

@@ -1,6 +1,7 @@
 //! Tests of the library in one program: to compile and link one for each file would take most of their time.
 #![cfg(test)]
 
+mod allan;
 mod common;
 mod dialect_set;
 mod dialects;

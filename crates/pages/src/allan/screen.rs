@@ -1,13 +1,16 @@
 //! The first screen of Allan deviations.
 
 use gyrocal_document::{Screen, Standing};
-use gyrocal_instruments::AllanReport;
+use gyrocal_instruments::{AllanReport, LeftOut};
 use gyrocal_statistics::allan::NoiseFit;
 use gyrocal_statistics::format;
 use gyrocal_words::counted;
 
 /// Columns that are told one by one.
 const COLUMNS_SHOWN: usize = 4;
+
+/// Samples of a column that are told one by one.
+const SAMPLES_SHOWN: usize = 3;
 
 /// The parts of the noise of each column, and whether they describe it.
 pub(super) fn first(report: &AllanReport, clock: Option<&str>) -> Screen {
@@ -30,8 +33,22 @@ pub(super) fn first(report: &AllanReport, clock: Option<&str>) -> Screen {
         );
         Screen::new(Standing::Doubtful, "NOISE NOT EXPLAINED", what)
     };
+    let bad: usize = columns
+        .iter()
+        .filter_map(|column| Some(column.left_out.as_ref()?.count))
+        .sum();
+    if bad > 0 {
+        let what = format!("{}, beyond any noise, left out", counted(bad, "sample"));
+        screen = Screen::new(Standing::Doubtful, "BAD SAMPLES", what);
+    }
     for column in columns.iter().take(COLUMNS_SHOWN) {
         screen.fact(&column.name, parts(column.noise.as_ref(), &report.unit));
+        if let Some(left_out) = &column.left_out {
+            screen.fact("left out", bad_samples(left_out, &report.unit));
+        }
+    }
+    if bad > 0 && good == columns.len() {
+        screen.fact("what is left", format!("explained by {parts_of}"));
     }
     if columns.len() > COLUMNS_SHOWN {
         let more = columns.len() - COLUMNS_SHOWN;
@@ -49,6 +66,28 @@ pub(super) fn first(report: &AllanReport, clock: Option<&str>) -> Screen {
     );
     screen.fact("clock", clock.unwrap_or_default());
     screen
+}
+
+/// The samples of a column that are left out, and what would be said with them.
+pub(super) fn bad_samples(left_out: &LeftOut, unit: &str) -> String {
+    let each = left_out.samples.iter().take(SAMPLES_SHOWN).map(|one| {
+        format!(
+            "{} at {} s ({} {unit})",
+            one.sample,
+            format::short(one.time_s, 6),
+            format::short(one.value, 5)
+        )
+    });
+    let each = each.collect::<Vec<_>>().join(", ");
+    let more = match left_out.count.saturating_sub(SAMPLES_SHOWN) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    format!(
+        "sample {each}{more}; with {}: {}",
+        if left_out.count == 1 { "it" } else { "them" },
+        parts(left_out.noise_with_them.as_ref(), unit)
+    )
 }
 
 fn parts(noise: Option<&NoiseFit>, unit: &str) -> String {

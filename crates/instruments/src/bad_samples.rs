@@ -1,0 +1,139 @@
+//! Samples that hold more than any noise would.
+
+use gyrocal_statistics::{robust_sigma, upper_median};
+use serde::Serialize;
+
+/// Samples of the running median that a sample is held against: it follows noise as slow as that of a gyro, and a step,
+/// and five wild samples of eleven do not move it.
+const WINDOW: usize = 11;
+
+/// Deviation from it beyond which a sample is no noise, in robust standard deviations. Beside a step the median is the
+/// outermost of six samples, and filtered noise is near its median: six would take one log of sixty for wrong.
+const FAR: f64 = 8.0;
+
+/// Share of the samples above which wild values are the noise of this sensor.
+const LARGEST_SHARE: f64 = 0.01;
+
+/// Samples that are told one by one.
+const TOLD: usize = 100;
+
+/// A sample that no noise explains.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct BadSample {
+    /// Its number in the log, from one.
+    pub sample: usize,
+    /// Its time after the first sample \[s\].
+    pub time_s: f64,
+    /// Its value, in the unit of the scaled values.
+    pub value: f64,
+}
+
+/// Samples that no noise explains, each with the running median in its place.
+pub(crate) struct WithoutBadSamples {
+    pub(crate) values: Vec<f64>,
+    /// Places of the samples; empty if there are none, or so many that they are the noise.
+    pub(crate) places: Vec<usize>,
+}
+
+impl WithoutBadSamples {
+    pub(crate) fn of(values: &[f64]) -> Self {
+        let medians = running_median(values);
+        let off = |place: usize| (values[place] - medians[place]).abs();
+        let mut sizes: Vec<f64> = (0..values.len()).map(off).collect();
+        let limit = FAR * robust_sigma(&mut sizes);
+        let mut places: Vec<usize> = (0..values.len())
+            .filter(|place| off(*place) > limit)
+            .collect();
+        // A sensor whose values hardly ever change has no scale that could tell.
+        if limit == 0.0 || places.len() as f64 > LARGEST_SHARE * values.len() as f64 {
+            places.clear();
+        }
+        let mut cleaned = values.to_vec();
+        for place in &places {
+            cleaned[*place] = medians[*place];
+        }
+        Self {
+            values: cleaned,
+            places,
+        }
+    }
+
+    /// The first of them.
+    pub(crate) fn told(&self, values: &[f64], interval_s: f64) -> Vec<BadSample> {
+        let first = self.places.iter().take(TOLD);
+        first
+            .map(|place| BadSample {
+                sample: place + 1,
+                time_s: *place as f64 * interval_s,
+                value: values[*place],
+            })
+            .collect()
+    }
+}
+
+/// Median of the samples about each.
+fn running_median(values: &[f64]) -> Vec<f64> {
+    let half = WINDOW / 2;
+    let mut window = Vec::with_capacity(WINDOW);
+    let mut median = |place: usize| {
+        window.clear();
+        let to = values.len().min(place + half + 1);
+        window.extend_from_slice(&values[place.saturating_sub(half)..to]);
+        upper_median(&mut window).unwrap_or(values[place])
+    };
+    (0..values.len()).map(&mut median).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use gyrocal_truth::units::sensor_noise::{Filter, SensorNoise};
+
+    use super::*;
+
+    fn bad(values: &[f64]) -> usize {
+        WithoutBadSamples::of(values).places.len()
+    }
+
+    #[test]
+    fn sound_logs_keep_all_samples() {
+        for seed in 0..200 {
+            let noise = SensorNoise {
+                random_walk: 30.0,
+                bias_instability: 5.0,
+                filter: [Filter::None, Filter::Lag(3.0), Filter::MovingMean(5)][seed as usize % 3],
+                ..SensorNoise::default()
+            };
+            // A step is slow noise.
+            let mut values = noise.rates(4000, seed);
+            values[2000..].iter_mut().for_each(|rate| *rate += 500.0);
+            assert_eq!(bad(&values), 0, "{seed}");
+            // Coarse steps leave no scale, or one of a step.
+            let step = [20.0, 45.0, 100.0][seed as usize / 3 % 3];
+            let coarse: Vec<f64> = values
+                .iter()
+                .map(|rate| (rate / step).round() * step)
+                .collect();
+            assert_eq!(bad(&coarse), 0, "{seed}");
+        }
+    }
+
+    #[test]
+    fn what_one_sample_of_fifty_does_is_noise() {
+        let mut values = SensorNoise {
+            random_walk: 30.0,
+            ..SensorNoise::default()
+        }
+        .rates(4000, 1);
+        values
+            .iter_mut()
+            .step_by(500)
+            .for_each(|rate| *rate += 900.0);
+        assert_eq!(bad(&values), 8);
+        values
+            .iter_mut()
+            .step_by(50)
+            .for_each(|rate| *rate += 900.0);
+        assert_eq!(bad(&values), 0);
+    }
+}
