@@ -31,7 +31,7 @@ use blocks::Blocks;
 use fast_noise::fast_parts;
 use law::{Data, Law};
 use noise_model::NoiseModel;
-use terms::{RateTerm, time_and_temperature};
+use terms::{RateTerm, temperature, time_and_temperature};
 
 /// Settings of an evaluation in rates.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -75,6 +75,8 @@ pub struct RateEffect {
     pub name: String,
     /// Time of a step in its log, and the number of the log from zero.
     pub step: Option<(f64, usize)>,
+    /// Half the play of a hysteresis \[K\].
+    pub half_play_k: Option<f64>,
     /// Family-wise p-value.
     pub p_value: f64,
     /// Other effects that explain the log as well.
@@ -186,12 +188,13 @@ pub fn evaluate_rates(
     let earth = [horizontal, vertical];
     let of_log = |(log, blocks)| LogRates::of(log, blocks, earth, level_sigma_rad, &variances);
     let correlation = time_and_temperature(&blocks);
+    let range_k = temperature(&blocks).map_or(0.0, |all| all.max() - all.min());
     Ok(RateReport {
         logs: logs.iter().zip(&blocks).map(of_log).collect(),
         gyros: laws
             .iter()
             .enumerate()
-            .map(|(gyro, law)| report(gyro, law))
+            .map(|(gyro, law)| report(gyro, law, range_k))
             .collect(),
         earth_vertical_deg_per_h: vertical,
         earth_horizontal_deg_per_h: horizontal,
@@ -213,7 +216,7 @@ fn outputs(logs: &[Blocks], gyro: usize, vertical: f64) -> DVector<f64> {
     DVector::from_vec(values)
 }
 
-fn report(gyro: usize, law: &Law) -> GyroRates {
+fn report(gyro: usize, law: &Law, range_k: f64) -> GyroRates {
     let fit = &law.fit;
     let name = |term: &RateTerm| term.name(gyro);
     let coefficients = law
@@ -247,6 +250,10 @@ fn report(gyro: usize, law: &Law) -> GyroRates {
             .found
             .iter()
             .map(|found| RateEffect {
+                half_play_k: match found.term {
+                    RateTerm::Hysteresis(share) => Some(share * range_k),
+                    _ => None,
+                },
                 name: found.term.name(gyro),
                 step: match found.term {
                     RateTerm::Step { log, time_s } => Some((time_s, log)),
@@ -263,6 +270,29 @@ fn report(gyro: usize, law: &Law) -> GyroRates {
             rate_random_walk,
             between_logs,
         },
+    }
+}
+
+impl GyroRates {
+    /// The effects, each with its coefficient: these are the last of the law.
+    pub fn effects(&self) -> impl Iterator<Item = (&RateEffect, &RateCoefficient)> {
+        let first = self.coefficients.len() - self.effects.len();
+        self.effects.iter().zip(&self.coefficients[first..])
+    }
+}
+
+impl RateEffect {
+    /// When a step is, and how wide the play of a hysteresis; empty of others.
+    #[must_use]
+    pub fn place(&self, logs: usize) -> String {
+        match (self.step, self.half_play_k) {
+            (Some((time_s, log)), _) if logs > 1 => {
+                format!(" at {time_s:.0} s of log {}", log + 1)
+            }
+            (Some((time_s, _)), _) => format!(" at {time_s:.0} s"),
+            (_, Some(half_k)) => format!(", half play {half_k:.2} K"),
+            _ => String::new(),
+        }
     }
 }
 

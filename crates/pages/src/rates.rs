@@ -16,9 +16,8 @@ use crate::origin::{file_name, named, origin};
 pub fn of_rates(manifest: &Manifest, report: &RateReport, clocks: &[String]) -> Part {
     let inputs = &manifest.inputs;
     let logs = inputs.split_last().map_or(&[][..], |(_, logs)| logs);
-    let several = report.logs.len() > 1;
     let mut sections = vec![means(logs, report, clocks)];
-    sections.extend(report.gyros.iter().map(|gyro| of_gyro(gyro, several)));
+    sections.extend(report.gyros.iter().map(|gyro| of_gyro(gyro, logs.len())));
     Part {
         name: file_name(manifest, 0, "log"),
         size: named(logs),
@@ -60,7 +59,7 @@ fn means(logs: &[Input], report: &RateReport, clocks: &[String]) -> Section {
     section("means", "Means", &lead, items)
 }
 
-fn of_gyro(gyro: &GyroRates, several: bool) -> Section {
+fn of_gyro(gyro: &GyroRates, logs: usize) -> Section {
     let rows = gyro.coefficients.iter();
     let rows = rows.map(|one| EstimateRow::new(&one.name, &one.unit, [[one.estimate, one.sigma]]));
     let mut items = vec![Item::Estimates(Estimates {
@@ -74,9 +73,7 @@ fn of_gyro(gyro: &GyroRates, several: bool) -> Section {
         items.push(Item::text(format!("Not determined in addition: {names}.")));
     }
     for effect in &gyro.effects {
-        let at = effect.step.map_or_else(String::new, |(time_s, log)| {
-            format!(" at {time_s:.0} s of log {}", log + 1)
-        });
+        let at = effect.place(logs);
         let alternatives = match &effect.alternatives[..] {
             [] => "no alternative".to_owned(),
             names => format!("alternatives: {}", names.join(", ")),
@@ -86,7 +83,7 @@ fn of_gyro(gyro: &GyroRates, several: bool) -> Section {
         items.push(Item::text(found));
     }
     let noise = &gyro.noise;
-    let between = match several {
+    let between = match logs > 1 {
         true => format!(", bias from log to log {:.3e} deg/h", noise.between_logs),
         false => String::new(),
     };

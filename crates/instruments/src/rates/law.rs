@@ -17,6 +17,12 @@ const MOST_EFFECTS: usize = 4;
 /// Terms of a round of the search whose noise is fitted anew; the others are far behind.
 const REFITTED: usize = 3;
 
+/// Half the play of a hysteresis over the range of temperature, for which it is sought: each half as large again.
+const HALF_PLAYS: [f64; 9] = [0.02, 0.03, 0.045, 0.065, 0.1, 0.15, 0.21, 0.3, 0.42];
+
+/// Halvings of a quarter of a block in which the instant of a step is sought.
+const HALVINGS: usize = 6;
+
 /// Largest loss of log-likelihood of an alternative to an effect, the 95 % limit of one parameter.
 const ALTERNATIVE_NATS: f64 = 1.92;
 
@@ -128,9 +134,9 @@ impl Data<'_> {
             RateTerm::Temperature(2),
             RateTerm::Temperature(3),
             RateTerm::TemperatureRate,
-            RateTerm::Hysteresis,
             RateTerm::Drift(Term::Ramp),
         ];
+        candidates.extend(HALF_PLAYS.map(RateTerm::Hysteresis));
         candidates.retain(|term| term.column(self.gyro, self.logs).is_some());
         candidates
     }
@@ -165,18 +171,56 @@ impl Data<'_> {
         };
         let steps = self.logs.iter().enumerate().flat_map(|(log, blocks)| {
             let ends = blocks.time_s.windows(2).skip(1);
-            ends.map(move |pair| RateTerm::Step {
-                log,
-                time_s: 0.5 * (pair[0] + pair[1]),
-            })
+            let quarters = |pair: &[f64]| {
+                let [from, to] = [pair[0], pair[1]];
+                [0.5, 0.75, 1.0, 1.25].map(|share| from + share * (to - from))
+            };
+            let times = ends.flat_map(quarters);
+            times.map(move |time_s| RateTerm::Step { log, time_s })
         });
         let scored = |term: RateTerm| Some((term, score(term)?));
         let step = steps.filter_map(scored).max_by(|a, b| a.1.total_cmp(&b.1));
-        let mut ranked: Vec<(RateTerm, f64)> =
-            self.candidates().into_iter().filter_map(scored).collect();
+        let step = step.map(|best| self.refined(best, &scored));
+        let is_new = |term: &RateTerm| !terms.iter().any(|one| one.is_of_kind(*term));
+        let candidates = self.candidates().into_iter().filter(is_new);
+        let mut ranked: Vec<(RateTerm, f64)> = candidates.filter_map(scored).collect();
         ranked.extend(step);
         ranked.sort_by(|a, b| b.1.total_cmp(&a.1));
-        ranked.into_iter().map(|(term, _)| term).collect()
+        // Of each effect the best shape.
+        let mut best: Vec<RateTerm> = Vec::new();
+        for (term, _) in ranked {
+            if !best.iter().any(|one| one.is_of_kind(term)) {
+                best.push(term);
+            }
+        }
+        best
+    }
+
+    /// A step at the instant of the largest score near it.
+    fn refined(
+        &self,
+        mut best: (RateTerm, f64),
+        scored: &dyn Fn(RateTerm) -> Option<(RateTerm, f64)>,
+    ) -> (RateTerm, f64) {
+        let RateTerm::Step { log, time_s } = best.0 else {
+            return best;
+        };
+        let (mut time_s, mut width_s) = (time_s, 0.125 * self.logs[log].block_s);
+        for _ in 0..HALVINGS {
+            for side in [-width_s, width_s] {
+                let time_s = time_s + side;
+                let other = scored(RateTerm::Step { log, time_s });
+                best = other.filter(|other| other.1 > best.1).unwrap_or(best);
+            }
+            if let RateTerm::Step {
+                time_s: found_s, ..
+            } = best.0
+            {
+                time_s = found_s;
+            }
+            width_s *= 0.5;
+        }
+        best
     }
 
     fn with(&self, terms: &[RateTerm], term: RateTerm, start: Variances) -> Option<Fit> {

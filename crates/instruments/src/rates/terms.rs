@@ -1,8 +1,10 @@
 //! Terms of the law of a gyro's output in rates, as columns of a linear regression.
 
+use core::cmp::Ordering;
+
 use gyrocal::generated::catalogue::RATES;
 use gyrocal_record::AXES;
-use gyrocal_statistics::{PLAY_OF_HYSTERESIS, followed_with_play, local_slopes};
+use gyrocal_statistics::{followed_with_play, local_slopes};
 use nalgebra::DVector;
 
 use super::blocks::Blocks;
@@ -20,8 +22,9 @@ pub(super) enum RateTerm {
     Temperature(i32),
     /// Rate of change of temperature.
     TemperatureRate,
-    /// Part of temperature that follows it with play: different on the way up and on the way down.
-    Hysteresis,
+    /// Part of temperature that follows it with play: different on the way up and on the way down. Half the play, over
+    /// the range of temperature.
+    Hysteresis(f64),
     /// Change at a time \[s\] of a log.
     Step { log: usize, time_s: f64 },
 }
@@ -37,7 +40,7 @@ impl RateTerm {
             Self::Temperature(1) => format!("{own}.temperature"),
             Self::Temperature(power) => format!("{own}.temperature_{power}"),
             Self::TemperatureRate => format!("{own}.temperature_rate"),
-            Self::Hysteresis => format!("{own}.temperature_hysteresis"),
+            Self::Hysteresis(_) => format!("{own}.temperature_hysteresis"),
             Self::Step { .. } => format!("{own}.step"),
         }
     }
@@ -48,10 +51,18 @@ impl RateTerm {
             Self::Drift(term) => term.unit(gyro).to_owned(),
             Self::Turn(axis) if axis == gyro => "ppm".to_owned(),
             Self::Turn(_) => "mrad".to_owned(),
-            Self::Temperature(1) | Self::Hysteresis => "deg/h/K".to_owned(),
+            Self::Temperature(1) | Self::Hysteresis(_) => "deg/h/K".to_owned(),
             Self::Temperature(power) => format!("deg/h/K^{power}"),
             Self::TemperatureRate => "deg/h/(K/min)".to_owned(),
             Self::Step { .. } => "deg/h".to_owned(),
+        }
+    }
+
+    /// Whether two terms are one effect, but for a shape: steps at two instants, hysteresis of two plays.
+    pub(super) fn is_of_kind(self, other: Self) -> bool {
+        match (self, other) {
+            (Self::Hysteresis(_), Self::Hysteresis(_)) => true,
+            (one, other) => one == other,
         }
     }
 
@@ -91,9 +102,9 @@ impl RateTerm {
                 })?;
                 Some(60.0 * DVector::from_vec(changes))
             }
-            Self::Hysteresis => {
+            Self::Hysteresis(share) => {
                 let all = temperature(logs)?;
-                let half = 0.5 * PLAY_OF_HYSTERESIS * (all.max() - all.min());
+                let half = share * (all.max() - all.min());
                 let lagging = of_logs(logs, |log| {
                     Some(followed_with_play(log.temperature_c.as_ref()?, half))
                 })?;
@@ -103,9 +114,11 @@ impl RateTerm {
             Self::Step { log: which, time_s } => {
                 let mut values = Vec::new();
                 for (number, log) in logs.iter().enumerate() {
-                    let later = log.time_s.iter().map(|at| {
-                        let after = number > which || (number == which && *at > time_s);
-                        f64::from(u8::from(after))
+                    // A change within a block shows in the mean of its rest.
+                    let later = log.time_s.iter().map(|at| match number.cmp(&which) {
+                        Ordering::Less => 0.0,
+                        Ordering::Greater => 1.0,
+                        Ordering::Equal => ((at - time_s) / log.block_s + 0.5).clamp(0.0, 1.0),
                     });
                     values.extend(later);
                 }

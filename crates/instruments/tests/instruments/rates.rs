@@ -260,3 +260,24 @@ fn a_dead_gyro_and_a_log_that_turns_over_are_refused() {
     assert_eq!(kind(&[over]), Some(Unfit::NeverStatic));
     assert_eq!(kind(&[]), Some(Unfit::TooShort));
 }
+
+#[test]
+fn a_step_within_a_block_is_one_step() {
+    // Blocks of 2400 s over 64 last 37 s: the step is at a third of one.
+    let up = Vector3::new(0.1, -0.2, 1.0);
+    let drift = |sample: usize| Vector3::new(0.0, if sample < 10_700 { 0.0 } else { 180.0 }, 0.0);
+    let made = log(up, 24_000, &|_| 0.0, &Matrix3::identity(), &drift, 7);
+    let report = evaluated(&[made], "");
+    let effects: Vec<_> = report.gyros[1].effects().collect();
+    let [(effect, coefficient)] = &effects[..] else {
+        panic!("{effects:?}");
+    };
+    assert_eq!(effect.name, "gyro_y.step");
+    let (time_s, _) = effect.step.expect("instant");
+    // A block of this noise tells a step of 180 to a fiftieth of its length.
+    assert!((time_s - 1070.0).abs() < 3.0, "{time_s}");
+    assert!(
+        (coefficient.estimate - 180.0).abs() < SIGMAS * coefficient.sigma,
+        "{coefficient:?}"
+    );
+}

@@ -1,7 +1,7 @@
 //! The first screen of gyro outputs in the rate domain.
 
 use gyrocal_document::{Screen, Standing};
-use gyrocal_instruments::rates::RateReport;
+use gyrocal_instruments::rates::{GyroRates, RateReport};
 use gyrocal_record::Input;
 use gyrocal_statistics::format;
 use gyrocal_words::{counted, few};
@@ -16,11 +16,7 @@ const NAMES_SHOWN: usize = 3;
 
 /// Effects beyond the base law, biases, and what is not determined.
 pub(super) fn first(logs: &[Input], report: &RateReport) -> Screen {
-    let found: Vec<_> = report
-        .gyros
-        .iter()
-        .flat_map(|gyro| gyro.effects.iter().map(move |effect| (gyro, effect)))
-        .collect();
+    let found: Vec<_> = report.gyros.iter().flat_map(GyroRates::effects).collect();
     let mut screen = match found.len() {
         0 => Screen::new(
             Standing::Good,
@@ -33,21 +29,19 @@ pub(super) fn first(logs: &[Input], report: &RateReport) -> Screen {
             format!("{} in temperature or time", counted(count, "effect")),
         ),
     };
-    for (gyro, effect) in found.iter().take(EFFECTS_SHOWN) {
-        let coefficient = gyro.coefficients.iter().find(|c| c.name == effect.name);
-        if let Some(coefficient) = coefficient {
-            let estimate = format::estimate(coefficient.estimate, coefficient.sigma).join(" ± ");
-            let others = match &effect.alternatives[..] {
-                [] => String::new(),
-                names => format!("; may also be {}", names.join(", ")),
-            };
-            let words = format!(
-                "{estimate} {}, {}{others}",
-                coefficient.unit,
-                format::p_value(effect.p_value)
-            );
-            screen.fact(&effect.name, words);
-        }
+    for (effect, coefficient) in found.iter().take(EFFECTS_SHOWN) {
+        let estimate = format::estimate(coefficient.estimate, coefficient.sigma).join(" ± ");
+        let others = match &effect.alternatives[..] {
+            [] => String::new(),
+            names => format!("; may also be {}", names.join(", ")),
+        };
+        let words = format!(
+            "{estimate} {}{}, {}{others}",
+            coefficient.unit,
+            effect.place(report.logs.len()),
+            format::p_value(effect.p_value)
+        );
+        screen.fact(&effect.name, words);
     }
     biases(report, &mut screen);
     if let (true, Some(correlation)) = (report.time_is_temperature, report.time_and_temperature) {
