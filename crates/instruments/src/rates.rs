@@ -129,6 +129,10 @@ pub struct RateReport {
     pub earth_vertical_deg_per_h: f64,
     /// Horizontal part of Earth rate \[deg/h\].
     pub earth_horizontal_deg_per_h: f64,
+    /// `true` if a log turns about the vertical as under an Earth that turns the other way: within three standard
+    /// deviations, where ten tell the two apart. The signs of gyros or accelerometers are wrong then, or biases are as
+    /// large as that by chance.
+    pub earth_is_reversed: bool,
     /// Correlation of temperature and time; `None` without temperature.
     pub time_and_temperature: Option<f64>,
     /// `true` if temperature and time go together so closely that effects of one cannot be told from those
@@ -189,8 +193,10 @@ pub fn evaluate_rates(
     let of_log = |(log, blocks)| LogRates::of(log, blocks, earth, level_sigma_rad, &variances);
     let correlation = time_and_temperature(&blocks);
     let range_k = temperature(&blocks).map_or(0.0, |all| all.max() - all.min());
+    let logs: Vec<LogRates> = logs.iter().zip(&blocks).map(of_log).collect();
     Ok(RateReport {
-        logs: logs.iter().zip(&blocks).map(of_log).collect(),
+        earth_is_reversed: logs.iter().any(|log| is_reversed(log, vertical)),
+        logs,
         gyros: laws
             .iter()
             .enumerate()
@@ -201,6 +207,15 @@ pub fn evaluate_rates(
         time_and_temperature: correlation,
         time_is_temperature: correlation.is_some_and(|r| r.abs() >= TOGETHER),
     })
+}
+
+/// Whether a log turns about the vertical as the Earth does, the other way round.
+fn is_reversed(log: &LogRates, earth_deg_per_h: f64) -> bool {
+    /// Share of Earth rate that tilt and scale may take.
+    const OF_EARTH: f64 = 0.02;
+    let [rate, sigma] = log.vertical_deg_per_h;
+    let off = (3.0 * sigma).max(OF_EARTH * earth_deg_per_h.abs());
+    10.0 * sigma < earth_deg_per_h.abs() && (rate + earth_deg_per_h).abs() < off
 }
 
 /// Outputs of a gyro less the rate of the table and the vertical part of Earth rate \[deg/h\].

@@ -281,3 +281,12 @@ fn a_step_within_a_block_is_one_step() {
         "{coefficient:?}"
     );
 }
+
+#[test]
+fn an_earth_that_turns_the_other_way_is_told() {
+    let up = Vector3::new(0.1, -0.2, 1.0);
+    let still = |_: usize| 0.0;
+    let made = |matrix: Matrix3<f64>| log(up, 40_000, &still, &matrix, &|_| Vector3::zeros(), 8);
+    assert!(!evaluated(&[made(Matrix3::identity())], "").earth_is_reversed);
+    assert!(evaluated(&[made(-Matrix3::identity())], "").earth_is_reversed);
+}

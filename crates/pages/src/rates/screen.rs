@@ -29,6 +29,18 @@ pub(super) fn first(logs: &[Input], report: &RateReport) -> Screen {
             format!("{} in temperature or time", counted(count, "effect")),
         ),
     };
+    if report.earth_is_reversed {
+        screen = Screen::new(
+            Standing::Bad,
+            "CHECK SIGNS",
+            "the unit turns about the vertical against the Earth, at its rate",
+        );
+        screen.fact(
+            "check first",
+            "signs and axes of gyros and of accelerometers, sign of the latitude; or the bias about the vertical is twice \
+             Earth rate by chance",
+        );
+    }
     for (effect, coefficient) in found.iter().take(EFFECTS_SHOWN) {
         let estimate = format::estimate(coefficient.estimate, coefficient.sigma).join(" ± ");
         let others = match &effect.alternatives[..] {
