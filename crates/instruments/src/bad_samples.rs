@@ -46,7 +46,7 @@ impl WithoutBadSamples {
             .filter(|place| off(*place) > limit)
             .collect();
         // A sensor whose values hardly ever change has no scale that could tell.
-        if limit == 0.0 || places.len() as f64 > LARGEST_SHARE * values.len() as f64 {
+        if limit == 0.0 || places.len() as f64 > (LARGEST_SHARE * values.len() as f64).max(1.0) {
             places.clear();
         }
         let mut cleaned = values.to_vec();

@@ -98,6 +98,7 @@ pub fn multi_position_test(
             "stop in more attitudes",
         ));
     }
+    positions.refuse_still_gyros()?;
     let all: Vec<usize> = (0..stops).collect();
     let biases = differing_biases(positions, settings.search.false_alarm_probability);
     let positions = &with_one_bias(positions, &biases);

@@ -80,11 +80,11 @@ fn moments(samples: &[[f64; 3]], inflation: [f64; 3]) -> ([f64; 3], [f64; 3]) {
 
 /// Means over the parts of a stop, less that of all.
 fn parts(samples: &[[f64; 3]], of_all: [f64; 3]) -> Vec<[f64; 3]> {
-    let long = samples.len() / PARTS;
-    if long < FEWEST_SAMPLES {
+    let count = samples.len();
+    if count < PARTS * FEWEST_SAMPLES {
         return Vec::new();
     }
-    let chunks = (0..PARTS).map(|part| &samples[part * long..][..long]);
+    let chunks = (0..PARTS).map(|part| &samples[part * count / PARTS..(part + 1) * count / PARTS]);
     chunks
         .map(|chunk| core::array::from_fn(|axis| mean(chunk, axis) - of_all[axis]))
         .collect()

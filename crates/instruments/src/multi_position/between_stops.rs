@@ -6,7 +6,7 @@
 //! give it, and a ramp against walks.
 
 use gyrocal_statistics::math::{exp, ln};
-use gyrocal_statistics::{NORMAL_97_5, two_sided_p};
+use gyrocal_statistics::{NORMAL_97_5, normal_probability, two_sided_p};
 use nalgebra::{Cholesky, DMatrix, DVector};
 use serde::Serialize;
 
@@ -38,7 +38,7 @@ pub(super) struct BetweenStops {
     grid: Grid,
     gyros: [GyroAtLevels; 3],
     /// Biases of logs after the first that each law has.
-    biases: usize,
+    pub(super) biases: usize,
 }
 
 /// One gyro at all levels.
@@ -84,7 +84,7 @@ impl BetweenStops {
     /// Of stops whose gyros have these nominal laws.
     pub(super) fn of(positions: &Positions, laws: &[Vec<Term>]) -> Self {
         let parts: [StopParts; 3] = core::array::from_fn(|gyro| StopParts::of(positions, gyro));
-        let biases = positions.log.iter().max().copied().unwrap_or(0);
+        let biases = positions.logs().len().saturating_sub(1);
         let has_stops_to_spare = biases > 0 && biases + 1 < positions.time_s.len();
         if has_stops_to_spare {
             let each = Self::with_biases(&parts, laws, biases);
@@ -145,11 +145,11 @@ impl BetweenStops {
         for other in (0..3).filter(|other| *other != gyro) {
             let fits = self.fits(other, &laws[other], None)?;
             let likelihoods: Vec<f64> = fits.iter().map(|fit| fit.log_likelihood).collect();
-            for (sum, own) in ln_common.iter_mut().zip(self.grid.shared(&likelihoods)) {
+            for (sum, own) in ln_common.iter_mut().zip(self.grid.common(&likelihoods)) {
                 *sum += own;
             }
         }
-        Some(self.grid.shared(&ln_common))
+        Some(self.grid.of_gyro(&ln_common))
     }
 
     /// Weights of the levels of a gyro, which sum to one.
@@ -252,9 +252,8 @@ impl GyroAtLevels {
     fn of(parts: &StopParts, grid: &Grid, biases: usize) -> Self {
         let columns = parts.columns(biases);
         let at = grid.levels().map(|levels: Levels| {
-            // White noise of each part keeps the covariance positive definite.
-            let covariance = parts.covariance(levels);
-            let cholesky = Cholesky::new_unchecked(covariance);
+            // Fast noise, which each part has, keeps the covariance positive definite.
+            let cholesky = Cholesky::new_unchecked(parts.covariance(levels));
             let factor = cholesky.l_dirty();
             let ln_determinant = (0..factor.nrows()).map(|i| 2.0 * ln(factor[(i, i)])).sum();
             let mut white = columns.clone();
@@ -311,8 +310,8 @@ fn half_width(normals: &[[f64; 3]]) -> f64 {
     const HALVINGS: usize = 30;
     let beyond = |half: f64| -> f64 {
         let tails = normals.iter().map(|[weight, mean, sigma]| {
-            let upper = normal_tail((half - mean) / sigma);
-            let lower = normal_tail((half + mean) / sigma);
+            let upper = normal_probability((mean - half) / sigma);
+            let lower = normal_probability((-mean - half) / sigma);
             weight * (upper + lower)
         });
         tails.sum()
@@ -328,12 +327,6 @@ fn half_width(normals: &[[f64; 3]]) -> f64 {
         }
     }
     high
-}
-
-/// Probability of a normal deviate above a value.
-fn normal_tail(value: f64) -> f64 {
-    let half = 0.5 * two_sided_p(value);
-    if value < 0.0 { 1.0 - half } else { half }
 }
 
 /// Logarithm of a sum of exponentials.

@@ -5,6 +5,7 @@
 
 use gyrocal::generated::catalogue::RATES;
 use gyrocal_statistics::{chi_square_tail, p_of_least};
+use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 
 use super::between_stops::{BetweenStops, NoiseBetweenStops, TermEvidence};
@@ -18,9 +19,9 @@ use crate::error::{InstrumentError, Unfit};
 /// terms are within it.
 const LARGEST_DEFICIT: f64 = 3.0;
 
-/// Degrees of freedom of the noise between stops, in all gyros, below which no term is named: with two a term would have
-/// to be fifty times their scatter.
-const LEAST_FREEDOM: usize = 3;
+/// Degrees of freedom of the noise between stops, in all gyros together, below which no term is tested: two of each. The
+/// share of false terms was measured from there on.
+const LEAST_FREEDOM: usize = 6;
 
 /// A term whose column the law leaves less than this share of is not distinguishable from the law.
 const SMALLEST_SHARE: f64 = 0.03;
@@ -33,9 +34,12 @@ pub struct FewPositionReport {
     pub stops: usize,
     /// The law of each gyro.
     pub gyros: Vec<FewPositionLaw>,
-    /// Degrees of freedom of all gyros that tell the noise between stops beside a term of each. Of less than three no term
-    /// is named.
+    /// Degrees of freedom of all gyros that tell the noise between stops beside a term of each. Of less than six no term
+    /// is tested.
     pub freedom_of_noise: usize,
+    /// Logs after the first that have a bias of their own in each law, which then has the bias in the first log. Zero where
+    /// logs have too few stops for that: the scatter of the stops has the change of the bias too.
+    pub biases_of_further_logs: usize,
     /// Significant terms beyond the nominal laws, in the order of their significance.
     pub findings: Vec<FewPositionFinding>,
 }
@@ -44,7 +48,7 @@ impl FewPositionReport {
     /// Whether the stops tell the noise between them, so that a term is tested.
     #[must_use]
     pub fn tells_noise(&self) -> bool {
-        self.freedom_of_noise >= LEAST_FREEDOM || !self.findings.is_empty()
+        self.freedom_of_noise >= LEAST_FREEDOM
     }
 }
 
@@ -56,7 +60,7 @@ pub struct FewPositionLaw {
     pub gyro: String,
     /// Coefficients of the determined terms of the nominal law, and of the significant ones beyond it. Their standard
     /// deviations are those of the noise within and between stops: intervals of 1.96 of them hold 95 %. Where no degrees
-    /// of freedom are left they are those of equal biases at all stops.
+    /// of freedom are left they are those without scatter of the stops.
     pub coefficients: Vec<CoefficientReport>,
     /// Covariance of the coefficients in their order.
     pub covariance: Vec<Vec<f64>>,
@@ -101,6 +105,7 @@ pub fn few_position_test(
     false_alarm_probability: f64,
 ) -> Result<FewPositionReport, InstrumentError> {
     let stops = positions.time_s.len();
+    positions.refuse_still_gyros()?;
     refuse_one_position(positions)?;
     let all: Vec<usize> = (0..stops).collect();
     let data: Vec<WeightedStops> = (0..3)
@@ -110,7 +115,9 @@ pub fn few_position_test(
     let between = BetweenStops::of(positions, &laws);
     let freedom_of_noise = between.freedom(stops, &laws);
     let mut found: Vec<(usize, Term, f64)> = Vec::new();
-    while between.freedom(stops, &laws) >= LEAST_FREEDOM {
+    let is_tested = freedom_of_noise >= LEAST_FREEDOM;
+    // Each term takes one.
+    while is_tested && between.freedom(stops, &laws) > 0 {
         let Some((gyro, term, p_value)) = most_significant(&between, &data, &laws) else {
             break;
         };
@@ -122,7 +129,7 @@ pub fn few_position_test(
     }
     let gyros: Vec<FewPositionLaw> = data
         .iter()
-        .map(|data| law_report(data, &laws, &between))
+        .map(|data| law_report(data, &laws, &between, positions))
         .collect::<Result<_, _>>()?;
     let findings = found.iter().filter_map(|(gyro, term, p_value)| {
         let place = laws[*gyro].iter().position(|other| other == term)?;
@@ -139,6 +146,7 @@ pub fn few_position_test(
     Ok(FewPositionReport {
         stops,
         freedom_of_noise,
+        biases_of_further_logs: between.biases,
         findings: findings.collect(),
         gyros,
     })
@@ -217,16 +225,24 @@ fn nominal_law(data: &WeightedStops) -> Vec<Term> {
 
 /// `true` if the stops determine a term in addition to a law.
 fn is_new(data: &WeightedStops, law: &[Term], term: Term) -> bool {
-    let column = data.column(term);
+    // It is the attitudes that determine a term, however well each stop is measured.
+    let column = |term: Term| data.column(term).component_mul(&data.sigma);
+    let own = column(term);
     if law.is_empty() {
-        return column.norm() > 0.0;
+        return own.norm() > 0.0;
     }
     if law.len() >= data.len() {
         return false;
     }
-    let span = data.columns(law).qr().q();
-    let rest = &column - &span * (span.transpose() * &column);
-    rest.norm() > SMALLEST_SHARE * data.column(Term::Nominal(0)).norm()
+    let columns: Vec<DVector<f64>> = law.iter().map(|term| column(*term)).collect();
+    let span = DMatrix::from_columns(&columns).qr().q();
+    let rest = &own - &span * span.tr_mul(&own);
+    // A ramp is as long as the test; other terms are held against a g.
+    let whole = match term {
+        Term::Ramp => own.norm(),
+        _ => column(Term::Nominal(0)).norm(),
+    };
+    rest.norm() > SMALLEST_SHARE * whole
 }
 
 /// Of these terms, those that the stops determine beside a law.
@@ -241,18 +257,37 @@ fn open_terms(
         .collect()
 }
 
+/// Columns of a law and of the biases of logs after the first.
+fn with_biases(
+    data: &WeightedStops,
+    law: &[Term],
+    biases: usize,
+    positions: &Positions,
+) -> DMatrix<f64> {
+    let (terms, logs) = (data.columns(law), positions.logs());
+    DMatrix::from_fn(data.len(), law.len() + biases, |stop, place| {
+        match place.checked_sub(law.len()) {
+            None => terms[(stop, place)],
+            Some(log) if positions.log[stop] == logs[log + 1] => data.sigma[stop].recip(),
+            Some(_) => 0.0,
+        }
+    })
+}
+
 fn law_report(
     data: &WeightedStops,
     laws: &[Vec<Term>],
     between: &BetweenStops,
+    positions: &Positions,
 ) -> Result<FewPositionLaw, InstrumentError> {
     let law = &laws[data.gyro];
+    let columns = with_biases(data, law, between.biases, positions);
     // The fit may use every stop.
-    let fit = Fit::exact(&data.columns(law), &data.rates).ok_or_else(|| too_few(data.len()))?;
+    let fit = Fit::exact(&columns, &data.rates).ok_or_else(|| too_few(data.len()))?;
     let integrated = between
         .law(data.gyro, laws)
         .ok_or_else(|| too_few(data.len()))?;
-    let freedom = data.len() - law.len();
+    let freedom = data.len() - columns.ncols();
     let p_value =
         (freedom > 0).then(|| chi_square_tail(fit.chi_square, freedom as f64).unwrap_or(f64::NAN));
     let covariance = &integrated.covariance;
@@ -262,10 +297,13 @@ fn law_report(
         sigma: covariance[(i, i)].sqrt(),
         unit: term.unit(data.gyro).to_owned(),
     });
-    let undetermined = Term::NOMINAL
-        .into_iter()
-        .chain(Term::catalogue(data.gyro))
-        .filter(|term| !law.contains(term) && !is_new(data, law, *term));
+    let of_gyro = Term::NOMINAL.into_iter().chain(Term::catalogue(data.gyro));
+    // Biases of further logs may take a term up.
+    let is_open = |term: &Term| {
+        is_new(data, law, *term)
+            && (between.biases == 0 || between.terms(data.gyro, laws, &[*term])[0].is_some())
+    };
+    let undetermined = of_gyro.filter(|term| !law.contains(term) && !is_open(term));
     Ok(FewPositionLaw {
         gyro: RATES[data.gyro].id.to_owned(),
         coefficients: coefficients.collect(),

@@ -13,6 +13,9 @@ pub(super) type Levels = [f64; DIMENSIONS];
 /// Least levels that are not zero: half a standard error of a stop widens no sigma by more than an eighth.
 const LEAST: f64 = 0.5;
 
+/// Largest ratio of the largest level to the least: what is so much less makes no difference beside it.
+const RANGE: f64 = 500.0;
+
 /// Ratios of successive levels of scatter, flicker and walk. Twenty stops of three gyros tell the logarithm of their
 /// scatter to an eighth; the levels of the two others are told less well, and grids of three to a decade gave the same
 /// share of false terms.
@@ -38,8 +41,13 @@ impl Grid {
             if dimension == 0 && !has_scatter {
                 return axis;
             }
-            let mut level = LEAST;
-            while level <= largest.max(LEAST) {
+            let largest = if largest.is_finite() {
+                largest.max(LEAST)
+            } else {
+                LEAST
+            };
+            let mut level = LEAST.max(largest / RANGE);
+            while level <= largest {
                 axis.push(level);
                 level *= RATIOS[dimension];
             }
@@ -64,9 +72,18 @@ impl Grid {
         })
     }
 
-    /// From logarithms over the levels of one gyro to those over the levels that are common to the gyros, or back:
-    /// the levels of a gyro are near the common ones, or anywhere.
-    pub(super) fn shared(&self, logs: &[f64]) -> Vec<f64> {
+    /// Likelihoods of the levels that are common to the gyros from those of one gyro, whose levels are near the common
+    /// ones or anywhere; all as logarithms.
+    pub(super) fn common(&self, of_gyro: &[f64]) -> Vec<f64> {
+        self.moved(of_gyro, |kernel, common, own| kernel[common][own])
+    }
+
+    /// Probabilities of the levels of a gyro from those of the common ones.
+    pub(super) fn of_gyro(&self, common: &[f64]) -> Vec<f64> {
+        self.moved(common, |kernel, own, common| kernel[common][own])
+    }
+
+    fn moved(&self, logs: &[f64], share: fn(&[Vec<f64>], usize, usize) -> f64) -> Vec<f64> {
         let largest = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let mut near: Vec<f64> = logs.iter().map(|one| exp(one - largest)).collect();
         let anywhere = exp(ln_sum(logs) - largest) / self.len() as f64;
@@ -78,8 +95,8 @@ impl Grid {
             for (place, sum) in moved.iter_mut().enumerate() {
                 let own = place / stride % count;
                 let first = place - own * stride;
-                for (other, share) in kernel[own].iter().enumerate() {
-                    *sum += share * near[first + other * stride];
+                for other in 0..count {
+                    *sum += share(kernel, own, other) * near[first + other * stride];
                 }
             }
             near = moved;
@@ -111,7 +128,8 @@ impl Grid {
 
 /// Probability of each level of an axis given each common one. Zero counts as one step below the least.
 fn kernel(axis: &[f64], ratio: f64) -> Vec<Vec<f64>> {
-    let logarithm = |level: f64| ln(if level > 0.0 { level } else { LEAST / ratio });
+    let least = axis.get(1).copied().unwrap_or(LEAST) / ratio;
+    let logarithm = |level: f64| ln(if level > 0.0 { level } else { least });
     let row = |common: &f64| {
         let normal = |level: &f64| {
             let off = (logarithm(*level) - logarithm(*common)) / SPREAD;

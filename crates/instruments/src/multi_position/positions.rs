@@ -1,9 +1,11 @@
 //! Rates and specific force at the stops, in physical units.
 
 use gyrocal::EARTH_RATE_RAD_PER_S;
+use gyrocal::generated::catalogue::RATES;
 use gyrocal_statistics::root_mean_square;
 
 use crate::accel_from_norm::AccelCalibration;
+use crate::error::{InstrumentError, Unfit};
 use crate::stop_means::StopMeans;
 
 /// Gyro rates and specific force at the stops.
@@ -99,6 +101,39 @@ impl Positions {
             log: vec![0; stops.len()],
             force_g,
         }
+    }
+
+    /// Numbers of the logs that have stops, in rising order.
+    pub(super) fn logs(&self) -> Vec<usize> {
+        let mut logs = self.log.clone();
+        logs.sort_unstable();
+        logs.dedup();
+        logs
+    }
+
+    /// Refuses gyros whose output does not change within a stop: nothing tells their noise.
+    pub(super) fn refuse_still_gyros(&self) -> Result<(), InstrumentError> {
+        /// Standard error over the rate that rounding leaves of none.
+        const ROUNDING: f64 = 1e-10;
+        let pairs = self.sigma_deg_per_h.iter().zip(&self.rate_deg_per_h);
+        let still = pairs.enumerate().find_map(|(stop, (sigma, rate))| {
+            let is_still = |gyro: &usize| sigma[*gyro] <= ROUNDING * rate[*gyro].abs();
+            Some((stop, (0..3).find(is_still)?))
+        });
+        let Some((stop, gyro)) = still else {
+            return Ok(());
+        };
+        Err(InstrumentError::unfit(
+            Unfit::Saturated,
+            format!(
+                "{} with the same output in every sample of stop {} at {:.0} s",
+                RATES[gyro].id,
+                stop + 1,
+                self.time_s[stop]
+            ),
+            "an output with noise",
+            "record the outputs in finer steps, or stop for longer; a dead gyro or a wrong column has none either",
+        ))
     }
 
     /// Some of the stops.

@@ -195,11 +195,17 @@ pub fn search(
     }
 }
 
+/// Most stops of which the covariance of walks is factored at all levels: of more, as many in equal steps serve.
+const MOST_STOPS: usize = 48;
+
 /// Family-wise p-value of the ramp of a gyro in noise that may walk between stops.
 fn beside_walks(positions: &Positions, laws: &[Law], gyro: usize) -> f64 {
     let terms: Vec<Vec<Term>> = laws.iter().map(|law| law.terms.clone()).collect();
     let tests: usize = laws.iter().map(|law| law.candidates.len()).sum();
-    let between = BetweenStops::of(positions, &terms);
+    let stops = positions.time_s.len();
+    let count = stops.min(MOST_STOPS);
+    let some: Vec<usize> = (0..count).map(|place| place * stops / count).collect();
+    let between = BetweenStops::of(&positions.only(&some), &terms);
     let evidence = between
         .terms(gyro, &terms, &[Term::Ramp])
         .into_iter()

@@ -1,6 +1,7 @@
 //! Stops in parts: the rates of one gyro with the covariance of its noise within and between stops.
 
 use gyrocal_statistics::math::ln;
+use gyrocal_statistics::upper_median;
 use nalgebra::{DMatrix, DVector};
 
 use super::levels::Levels;
@@ -15,13 +16,16 @@ const MOST_PARTS: usize = 64;
 /// Logarithm of the longest time of the flicker over the duration of a test.
 const BEYOND: f64 = 3.0;
 
-/// Least duration of a part of a stop \[s\], where the instants of a stop are not known.
+/// Least share of fast noise in the variance of a stop: a held output has none.
+const LEAST_WHITE: f64 = 1e-4;
+
+/// Least duration of a stop \[s\], where the instants of a stop are not known.
 const SHORTEST_S: f64 = 1e-3;
 
 /// Rates of one gyro in parts of its stops.
 pub(super) struct StopParts {
     pub(super) terms: Vec<Term>,
-    /// Root mean square of the standard errors of the stops \[deg/h\].
+    /// Standard error whose information is the mean one of the stops \[deg/h\].
     pub(super) unit_deg_per_h: f64,
     rates: DVector<f64>,
     /// Rate of each part per unit of each term.
@@ -41,14 +45,13 @@ impl StopParts {
     pub(super) fn of(positions: &Positions, gyro: usize) -> Self {
         let stops = positions.time_s.len();
         let has_parts = has_parts(positions);
+        let logs = positions.logs();
         let mut terms = Term::NOMINAL.to_vec();
         terms.extend(Term::catalogue(gyro));
-        // Times are those of the middle of each stop, here after half of the first.
-        let start_s = positions
-            .time_s
-            .iter()
-            .copied()
-            .fold(f64::INFINITY, f64::min);
+        // Times are those of the middle of each stop.
+        let long_s = |stop: usize| positions.duration_s[stop].max(SHORTEST_S);
+        let from_s = |stop: usize| positions.time_s[stop] - 0.5 * long_s(stop);
+        let start_s = (0..stops).map(from_s).fold(f64::INFINITY, f64::min);
         let mut spans = Vec::new();
         let (mut rates, mut stop, mut log) = (Vec::new(), Vec::new(), Vec::new());
         let (mut white, mut heading, mut rows) = (Vec::new(), Vec::new(), Vec::new());
@@ -59,10 +62,9 @@ impl StopParts {
                 &[]
             };
             let count = own.len().max(1);
-            let long_s = positions.duration_s[number].max(SHORTEST_S * count as f64);
-            let each_s = long_s / count as f64;
+            let each_s = long_s(number) / count as f64;
             for part in 0..count {
-                let from_s = positions.time_s[number] - start_s + each_s * part as f64;
+                let from_s = from_s(number) - start_s + each_s * part as f64;
                 spans.push([from_s, from_s + each_s]);
                 let off = own.get(part).map_or(0.0, |off| off[gyro]);
                 rates.push(positions.rate_deg_per_h[number][gyro] + off);
@@ -71,10 +73,14 @@ impl StopParts {
                     &positions.heading_sigma_deg_per_h,
                 ]
                 .map(|sigma| sigma[number][gyro].powi(2));
-                white.push((total - by_heading) * count as f64);
+                white.push((total - by_heading).max(LEAST_WHITE * total) * count as f64);
                 heading.push(by_heading);
                 stop.push(number);
-                log.push(positions.log[number]);
+                log.push(
+                    logs.iter()
+                        .position(|log| *log == positions.log[number])
+                        .unwrap_or(0),
+                );
                 rows.push(response(
                     gyro,
                     &positions.force_g[number],
@@ -82,7 +88,12 @@ impl StopParts {
                 ));
             }
         }
-        let unit = positions.rms_sigma_deg_per_h(gyro);
+        // The stops that tell most have a level of noise in sight.
+        let informations = positions
+            .sigma_deg_per_h
+            .iter()
+            .map(|sigma| sigma[gyro].powi(-2));
+        let unit = (informations.sum::<f64>() / stops as f64).sqrt().recip();
         let variance = unit * unit;
         let spacing_s = spacing_s(positions);
         // Slower noise than that of the test is bias, which takes this constant up.
@@ -183,19 +194,16 @@ fn has_parts(positions: &Positions) -> bool {
         <= MOST_PARTS
 }
 
-/// Mean time from stop to stop.
+/// Median time from a stop to the next one of its log; of logs of one stop from log to log.
 fn spacing_s(positions: &Positions) -> f64 {
-    let times = &positions.time_s;
-    let [first, last] = [
-        times.iter().copied().fold(f64::INFINITY, f64::min),
-        times.iter().copied().fold(f64::NEG_INFINITY, f64::max),
-    ];
-    let longest = positions
-        .duration_s
-        .iter()
-        .copied()
-        .fold(SHORTEST_S, f64::max);
-    ((last - first) / (times.len().max(2) - 1) as f64).max(longest)
+    let times = positions.time_s.windows(2).zip(positions.log.windows(2));
+    let steps = |within: bool| -> Vec<f64> {
+        let of = times.clone().filter(|(_, log)| !within || log[0] == log[1]);
+        of.map(|(time, _)| (time[1] - time[0]).abs()).collect()
+    };
+    let median = |mut steps: Vec<f64>| upper_median(&mut steps);
+    let step = median(steps(true)).or_else(|| median(steps(false)));
+    step.unwrap_or(SHORTEST_S).max(SHORTEST_S)
 }
 
 /// Covariances of all pairs of parts.

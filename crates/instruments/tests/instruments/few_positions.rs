@@ -157,6 +157,79 @@ fn turn_ons_of_six_logs_are_no_terms() {
     assert!(within >= 16, "{within}");
 }
 
+/// Stops of unequal length in one log, with biases that walk by ten standard errors from stop to stop.
+#[test]
+fn stops_of_unequal_length_are_evaluated() {
+    let seconds = [60, 20, 20, 90, 20, 30, 20, 40];
+    let mut found = 0;
+    for seed in 0..10 {
+        let mut draw = Draw::new(seed, 6);
+        let forces = positions(8, &mut draw);
+        let mut unit = unit();
+        let mut samples = Samples::default();
+        for (force, seconds) in forces.iter().zip(seconds) {
+            unit.gyro_bias += 40.0 * PER_DEG_PER_H * vector(&mut draw);
+            let stop = stop(&unit, *force, seconds * 100, [0.0; 2], &mut draw);
+            let from = samples.gyro.len();
+            samples.gyro.extend(stop.gyro);
+            samples.accel.extend(stop.accel);
+            samples.stops.push(from..samples.gyro.len());
+        }
+        let test = prepare_logs(&[(log(&samples), samples.stops)], &description()).unwrap();
+        let report = few_position_test(&test.positions, 0.01).unwrap();
+        found += report.findings.len();
+    }
+    assert_eq!(found, 0);
+}
+
+/// Three logs of three stops each, turned on between.
+#[test]
+fn logs_of_several_stops_have_each_a_bias() {
+    let mut within = 0;
+    for seed in 0..10 {
+        let mut draw = Draw::new(seed, 7);
+        let forces = positions(9, &mut draw);
+        let order = [0, 2, 4, 1, 6, 8, 3, 5, 7];
+        let logs: Vec<_> = order
+            .chunks(3)
+            .map(|stops| {
+                let mut unit = unit();
+                unit.gyro_bias += 200.0 * PER_DEG_PER_H * vector(&mut draw);
+                let mut samples = Samples::default();
+                for place in stops {
+                    let stop = stop(&unit, forces[*place], 2000, [0.0; 2], &mut draw);
+                    let from = samples.gyro.len();
+                    samples.gyro.extend(stop.gyro);
+                    samples.accel.extend(stop.accel);
+                    samples.stops.push(from..samples.gyro.len());
+                }
+                (log(&samples), samples.stops)
+            })
+            .collect();
+        let test = prepare_logs(&logs, &description()).unwrap();
+        let report = few_position_test(&test.positions, 0.01).unwrap();
+        assert_eq!(report.biases_of_further_logs, 2);
+        assert_eq!(report.gyros[0].degrees_of_freedom, 9 - 3 - 2);
+        assert!(report.findings.is_empty(), "{:?}", report.findings);
+        // White noise alone is left, which the law explains.
+        assert!(report.gyros.iter().all(|gyro| gyro.p_value.unwrap() > 1e-4));
+        let along = &report.gyros[0].coefficients[1];
+        within += u32::from((along.estimate - 30.0).abs() < 1.96 * along.sigma);
+    }
+    assert!(within >= 8, "{within}");
+}
+
+#[test]
+fn a_gyro_without_noise_is_told() {
+    let mut still = unit();
+    still.gyro_noise = 0.0;
+    let mut draw = Draw::new(1, 8);
+    let forces = positions(6, &mut draw);
+    let test = prepared(&still, &forces, &mut draw);
+    let error = few_position_test(&test.positions, 0.01).unwrap_err();
+    assert_eq!(error.kind(), Some(Unfit::Saturated), "{error}");
+}
+
 #[test]
 fn two_positions_determine_what_changes_between_them() {
     let mut draw = Draw::new(4, 1);

@@ -47,8 +47,12 @@ pub(super) fn first(report: &AllanReport, clock: Option<&str>) -> Screen {
             screen.fact("left out", bad_samples(left_out, &report.unit));
         }
     }
-    if bad > 0 && good == columns.len() {
-        screen.fact("what is left", format!("explained by {parts_of}"));
+    if bad > 0 {
+        let words = match good == columns.len() {
+            true => format!("explained by {parts_of}"),
+            false => format!("not explained by {parts_of}, in {} of {all}", all - good),
+        };
+        screen.fact("what is left", words);
     }
     if columns.len() > COLUMNS_SHOWN {
         let more = columns.len() - COLUMNS_SHOWN;

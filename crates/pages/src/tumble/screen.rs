@@ -169,16 +169,17 @@ fn few_positions(report: &FewPositionReport) -> Screen {
         format!("{} {median} (at most {most})", gyro.gyro)
     });
     let between = between.collect::<Vec<_>>().join(", ");
-    screen.fact(
-        "between stops",
-        format!("scatter beyond the noise of a stop, deg/h: {between}"),
-    );
-    if !report.tells_noise() {
+    if report.tells_noise() {
+        screen.fact(
+            "between stops",
+            format!("scatter beyond the noise of a stop, deg/h: {between}"),
+        );
+    } else {
         let left = counted(report.freedom_of_noise, "degree");
         screen.fact(
             "not tested",
             format!(
-                "{left} of freedom tell the noise between stops, a term needs three: repeat positions, each repeat \
+                "{left} of freedom tell the noise between stops, a test needs six: repeat positions, each repeat \
                  gives one to each gyro"
             ),
         );
