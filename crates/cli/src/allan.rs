@@ -8,12 +8,12 @@ use gyrocal_instruments::{
     allan_log,
 };
 use gyrocal_pages::of_allan;
-use gyrocal_record::{Outputs, SourceText};
+use gyrocal_record::SourceText;
 use gyrocal_statistics::allan::AllanEstimator;
 
 use crate::measured::unusable;
 use crate::numbers::{positive, probability};
-use crate::outputs::{self, manifest};
+use crate::outputs::manifest;
 use crate::page::Views;
 use crate::{Failure, Reply};
 
@@ -92,20 +92,13 @@ pub(crate) fn run(arguments: &AllanArguments) -> Result<Reply, Failure> {
     let mut inputs = vec![&*arguments.log];
     inputs.extend(arguments.log_description.as_deref());
     let json = arguments.json.as_deref();
-    outputs::check(&inputs, json, arguments.views.figures())?;
-    arguments.views.check(&inputs, &[("--json", json)])?;
+    arguments.views.check(&inputs, json, &[])?;
     let (report, clock) = analysed(arguments).map_err(|error| unusable(&arguments.log, error))?;
     let manifest = manifest("", 0, &inputs)?;
     let part = of_allan(&manifest, &report, clock.as_deref());
     let mut answer = Reply::of_part(&part);
-    let mut outputs = Outputs::new();
-    let views = &arguments.views;
-    views.stage(&arguments.log, part, &mut outputs, &mut answer)?;
-    if let Some(path) = &arguments.json {
-        outputs.stage_json(path, &ResultFile::new(manifest, report))?;
-        answer.wrote(path, "the result for programs");
-    }
-    outputs.commit()?;
+    arguments.views.stage(&arguments.log, part, &mut answer)?;
+    answer.write_json(json, &ResultFile::new(manifest, report))?;
     Ok(answer)
 }
 

@@ -14,13 +14,13 @@ use gyrocal_diagnosis::{
 };
 use gyrocal_pages::of_calibration;
 use gyrocal_record::{
-    CalibrationMethod, CalibrationReport, FittedEffects, InputRole, Outputs, printable_path,
+    CalibrationMethod, CalibrationReport, FittedEffects, InputRole, printable_path,
 };
 use gyrocal_setup::PlatformKind;
 use miette::miette;
 
 use crate::numbers::positive;
-use crate::outputs::{self, manifest_of};
+use crate::outputs::manifest_of;
 use crate::page::{self, Views};
 use crate::progress::Progress;
 use crate::{Failure, Reply, exit, gyro_axes, records};
@@ -189,7 +189,9 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Reply, Failure> {
     arguments.check()?;
     let inputs = arguments.inputs();
     let paths: Vec<&Path> = inputs.iter().map(|(_, path)| *path).collect();
-    check_outputs(arguments, &paths)?;
+    let (json, table) = (arguments.json.as_deref(), arguments.coefficients.as_deref());
+    let tables = [("--coefficients", table)];
+    arguments.views.check(&paths, json, &tables)?;
     let measurements = inputs::read(arguments)?;
     if measurements.iter().any(|measurement| measurement.stops) {
         return Err(stopped(arguments, &measurements, &inputs)?.into());
@@ -238,37 +240,20 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Reply, Failure> {
         &arguments.records[0],
         of_calibration(&report, &[]),
     )?);
-    let mut outputs = Outputs::new();
     if arguments.views.are_asked() {
         let (record, views) = (&arguments.records[0], &arguments.views);
         let part = over_time::part(record, &report, &measurements, (&gyro_axes, &options))?;
-        views.stage(record, part, &mut outputs, &mut answer)?;
+        views.stage(record, part, &mut answer)?;
     }
-    if let Some(path) = &arguments.json {
-        outputs.stage_json(path, &report)?;
-    }
-    let path = arguments.coefficients.as_deref();
-    let table = || report.coefficient_table();
-    records::stage(path, table, "the coefficients", &mut outputs, &mut answer)?;
-    outputs.commit()?;
-    if let Some(path) = &arguments.json {
-        answer.wrote(path, "the result for programs");
-    }
+    answer.write(table, "the coefficients", |path| {
+        Ok(report.coefficient_table().content(path)?)
+    })?;
+    answer.write_json(json, &report)?;
     // Coefficients that mean nothing are no result.
     if !report.usable {
         answer.exit_code = exit::FAILED;
     }
     Ok(answer)
-}
-
-/// Refuses outputs that are inputs, or cannot be written.
-fn check_outputs(arguments: &CalibrateArguments, inputs: &[&Path]) -> Result<(), Failure> {
-    let (json, table) = (arguments.json.as_deref(), arguments.coefficients.as_deref());
-    let figures = arguments.views.figures();
-    outputs::check(inputs, json, figures)?;
-    let others = [("--json", json), ("--coefficients", table)];
-    arguments.views.check(inputs, &others)?;
-    outputs::refuse_unwritable(&[table], figures)
 }
 
 /// Writes the result of records whose set-up is wrong; the failure that tells it.
@@ -281,16 +266,12 @@ fn stopped(
     let manifest = manifest_of(MODEL_HASH, 0, inputs)?;
     let problems = problems.cloned().collect();
     let report = CalibrationReport::of_wrong_setup(manifest, arguments.method(), problems);
-    let mut outputs = Outputs::new();
+    let mut written = Reply::default();
     // Nothing was fitted, which leaves nothing to draw.
-    if let Some(path) = arguments.views.report() {
-        let part = page::part(&arguments.records[0], of_calibration(&report, &[]))?;
-        page::stage(path, vec![part], &mut outputs)?;
-    }
-    if let Some(path) = &arguments.json {
-        outputs.stage_json(path, &report)?;
-    }
-    outputs.commit()?;
+    let part = page::part(&arguments.records[0], of_calibration(&report, &[]))?;
+    page::write(arguments.views.report(), vec![part], &mut written)?;
+    written.write_json(arguments.json.as_deref(), &report)?;
+    written.committed()?;
     Ok(WrongSetup::new(&report, arguments.json.as_deref()))
 }
 

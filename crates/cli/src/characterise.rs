@@ -12,7 +12,7 @@ use gyrocal_evaluation::{
     BaselineMethod, CellReport, CharacteriseReport, PopulationCell, cell_campaign, cell_report,
 };
 use gyrocal_pages::of_characterise;
-use gyrocal_record::{SCHEMA_VERSION, printable_path, write_json, write_whole};
+use gyrocal_record::{SCHEMA_VERSION, printable_path};
 use miette::miette;
 
 use crate::monte_carlo::progress::SeedProgress;
@@ -97,15 +97,11 @@ pub(crate) fn run(arguments: &CharacteriseArguments) -> Result<Reply, Failure> {
     if arguments.exit_code && !report.cells.iter().all(CellReport::holds) {
         answer.exit_code = exit::FOUND;
     }
-    if let Some(path) = &arguments.markdown {
-        let page = markdown::page(&part.sections, &report.manifest.command);
-        write_whole(path, page.as_bytes())?;
-        answer.wrote(path, "the tables as Markdown");
-    }
-    if let Some(path) = &arguments.json {
-        write_json(path, &report)?;
-        answer.wrote(path, "the result for programs");
-    }
+    let markdown = arguments.markdown.as_deref();
+    answer.write(markdown, "the tables as Markdown", |_| {
+        Ok(markdown::page(&part.sections, &report.manifest.command))
+    })?;
+    answer.write_json(arguments.json.as_deref(), &report)?;
     Ok(answer)
 }
 

@@ -22,7 +22,7 @@ use crate::plant::{NewPlantArguments, PlantArguments, PlantCli};
 use crate::rates::RatesArguments;
 use crate::report::ReportArguments;
 use crate::simulate::SimulateArguments;
-use crate::terminal::{Color, Shown};
+use crate::terminal::{Shown, color_of};
 use crate::tumble::TumbleArguments;
 use crate::watch::WatchArguments;
 
@@ -87,7 +87,7 @@ fn parsed<P: FromArgMatches>(
     definition: clap::Command,
     arguments: &[OsString],
 ) -> Result<P, clap::Error> {
-    let definition = definition.color(Color::of_arguments(arguments).of_clap());
+    let definition = definition.color(color_of(arguments));
     let parsed = |arguments: &mut dyn Iterator<Item = OsString>| {
         let matches = definition.clone().try_get_matches_from(arguments)?;
         P::from_arg_matches(&matches)

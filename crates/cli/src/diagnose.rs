@@ -13,10 +13,10 @@ use gyrocal_diagnosis::{
     DiagnoseOptions, Diagnosis, DiagnosisError, FILTER_EFFECT, Gate, TestedFilter, diagnose_watched,
 };
 use gyrocal_pages::{of_diagnosis, of_result};
-use gyrocal_record::{Bench, InputRole, Outputs, printable_path};
+use gyrocal_record::{Bench, InputRole};
 
 use crate::numbers::probability;
-use crate::outputs::{self, manifest_of, same_file};
+use crate::outputs::{manifest_of, refuse_itself, write_answer};
 use crate::page::{self, Views};
 use crate::progress::Progress;
 use crate::{Failure, Reply, exit, gyro_axes, records};
@@ -204,32 +204,13 @@ fn checked_inputs(arguments: &DiagnoseArguments) -> Result<Vec<(InputRole, &Path
     }
     let roles = arguments.inputs();
     let inputs: Vec<&Path> = roles.iter().map(|(_, path)| *path).collect();
-    outputs::check(
-        &inputs,
-        arguments.json.as_deref(),
-        arguments.views.figures(),
-    )?;
-    let json = ("--json", arguments.json.as_deref());
-    let findings = arguments.findings.as_deref();
-    let coefficients = arguments.coefficients.as_deref();
-    let others = [
-        json,
-        ("--findings", findings),
-        ("--coefficients", coefficients),
+    let tables = [
+        ("--findings", arguments.findings.as_deref()),
+        ("--coefficients", arguments.coefficients.as_deref()),
     ];
-    arguments.views.check(&inputs, &others)?;
-    outputs::refuse_unwritable(&[findings, coefficients], arguments.views.figures())?;
-    if let Some(later) = &arguments.validate
-        && arguments
-            .records
-            .iter()
-            .any(|record| same_file(later, record))
-    {
-        return Err(Failure::Usage(format!(
-            "--validate {} is the record itself: a later one has had no part in the models",
-            printable_path(later)
-        )));
-    }
+    let json = arguments.json.as_deref();
+    arguments.views.check(&inputs, json, &tables)?;
+    refuse_itself(arguments.validate.as_deref(), &arguments.records)?;
     if arguments.effects.iter().any(|id| id == FILTER_EFFECT) {
         return Err(Failure::Usage(format!(
             "{} is an error of a filter and not of the record: --filter euler tests it",
@@ -247,16 +228,9 @@ fn stopped(
 ) -> Result<Reply, Failure> {
     result.manifest = manifest_of(MODEL_HASH, result.manifest.seed, inputs)?;
     let mut answer = Reply::of_answer(&result);
-    let mut outputs = Outputs::new();
-    if let Some(path) = arguments.views.report() {
-        page::stage(path, vec![of_result(&result)], &mut outputs)?;
-        answer.wrote(path, page::WHAT);
-    }
-    if let Some(path) = &arguments.json {
-        outputs::stage_answer(path, &result, &mut outputs)?;
-        answer.wrote(path, "the result for programs");
-    }
-    outputs.commit()?;
+    let parts = vec![of_result(&result)];
+    page::write(arguments.views.report(), parts, &mut answer)?;
+    write_answer(arguments.json.as_deref(), &result, &mut answer)?;
     if arguments.exit_code {
         answer.exit_code = exit::SETUP;
     }
@@ -272,44 +246,33 @@ fn answer(
 ) -> Result<Reply, Failure> {
     let result = &diagnosis.result;
     let mut answer = Reply::of_answer(result);
-    let mut outputs = Outputs::new();
     if arguments.views.are_asked() {
         let part = page::part(record, of_diagnosis(diagnosis, bench))?;
-        let views = &arguments.views;
-        views.stage(record, part, &mut outputs, &mut answer)?;
+        arguments.views.stage(record, part, &mut answer)?;
     }
-    if let Some(path) = &arguments.json {
-        outputs::stage_answer(path, result, &mut outputs)?;
-        answer.wrote(path, "the result for programs");
-    }
-    stage_tables(arguments, result, &mut outputs, &mut answer)?;
-    outputs.commit()?;
-    answer.exit_code = exit_code(arguments, result.verdict);
-    Ok(answer)
+    finished(arguments, result, answer)
 }
 
-/// Stages the tables of findings and coefficients that are asked for.
-fn stage_tables(
+/// Adds the files for programs that are asked for, and the exit code.
+fn finished(
     arguments: &DiagnoseArguments,
     result: &Answer,
-    outputs: &mut Outputs,
-    answer: &mut Reply,
-) -> Result<(), Failure> {
-    let findings = || result.finding_table();
-    let path = arguments.findings.as_deref();
-    records::stage(path, findings, "the findings", outputs, answer)?;
-    let coefficients = || result.coefficient_table();
-    let path = arguments.coefficients.as_deref();
-    records::stage(path, coefficients, "the coefficients", outputs, answer)
-}
-
-/// The exit code of a verdict, if it was asked for.
-fn exit_code(arguments: &DiagnoseArguments, verdict: Verdict) -> u8 {
-    match (arguments.exit_code, verdict) {
+    mut answer: Reply,
+) -> Result<Reply, Failure> {
+    write_answer(arguments.json.as_deref(), result, &mut answer)?;
+    answer.write(arguments.findings.as_deref(), "the findings", |path| {
+        Ok(result.finding_table().content(path)?)
+    })?;
+    let coefficients = arguments.coefficients.as_deref();
+    answer.write(coefficients, "the coefficients", |path| {
+        Ok(result.coefficient_table().content(path)?)
+    })?;
+    answer.exit_code = match (arguments.exit_code, result.verdict) {
         (true, Verdict::EffectsFound) => exit::FOUND,
         (true, Verdict::Unexplained) => exit::UNEXPLAINED,
         (true, Verdict::Setup) => exit::SETUP,
         (true, Verdict::NotSettled) => exit::NOT_SETTLED,
         _ => exit::DONE,
-    }
+    };
+    Ok(answer)
 }

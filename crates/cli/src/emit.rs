@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use gyrocal_document::{Screen, Standing};
-use gyrocal_emit::{Emission, EmitError, Extension, Number};
-use gyrocal_record::{ModelFile, Outputs, module_name, printable_path};
+use gyrocal_emit::{Emission, Extension, Number};
+use gyrocal_record::{ModelFile, module_name, printable_path};
 use miette::{IntoDiagnostic as _, Report, WrapErr as _};
 
 use crate::extend::known;
@@ -73,19 +73,11 @@ pub(crate) fn run(arguments: &EmitArguments) -> Result<Reply, Failure> {
         module: text,
     });
     let written = Emission { number, extension }.write();
-    let text = written.map_err(|error| Failure::Work(report(error)))?;
-    let mut outputs = Outputs::new();
-    outputs.stage(&arguments.out, text.as_bytes())?;
-    outputs.commit()?;
+    let text = written.map_err(|error| Failure::Work(Report::msg(error)))?;
     let effects = extended.map_or_else(Vec::new, |(model, _, _)| model.effects);
-    Ok(Reply::of(
-        screen(arguments, number, &effects),
-        String::new(),
-    ))
-}
-
-fn report(error: EmitError) -> Report {
-    Report::msg(error)
+    let mut reply = Reply::of(screen(arguments, number, &effects), String::new());
+    reply.outputs.stage(&arguments.out, text.as_bytes())?;
+    Ok(reply)
 }
 
 fn screen(arguments: &EmitArguments, number: Number, effects: &[String]) -> Screen {

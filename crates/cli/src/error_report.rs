@@ -26,51 +26,25 @@ const TAB: usize = 4;
 /// Lines shown before and after the marked one.
 const CONTEXT: usize = 1;
 
-/// The signs of a drawing.
-#[derive(Debug)]
-struct Signs {
-    error: &'static str,
-    bar: &'static str,
-    dash: &'static str,
-    tee: &'static str,
-    corner: &'static str,
-    branch: &'static str,
-    top: &'static str,
-    arrow: &'static str,
-    up: &'static str,
-    gap: &'static str,
-}
-
-const UNICODE: Signs = Signs {
-    error: "×",
-    bar: "│",
-    dash: "─",
-    tee: "┬",
-    corner: "╰",
-    branch: "├",
-    top: "╭",
-    arrow: "▶",
-    up: "▲",
-    gap: "·",
-};
-
-const ASCII: Signs = Signs {
-    error: "x",
-    bar: "|",
-    dash: "-",
-    tee: "|",
-    corner: "`",
-    branch: "|",
-    top: ",",
-    arrow: ">",
-    up: "^",
-    gap: ":",
-};
+/// The signs of drawings, each with the letter that stands for it where a stream shows ASCII only.
+const SIGNS: [(char, char); 10] = [
+    ('×', 'x'),
+    ('│', '|'),
+    ('─', '-'),
+    ('┬', '|'),
+    ('╰', '`'),
+    ('├', '|'),
+    ('╭', ','),
+    ('▶', '>'),
+    ('▲', '^'),
+    ('·', ':'),
+];
 
 /// Prints errors with styles, which the stream removes where they cannot be shown.
 #[derive(Debug)]
 pub(crate) struct ErrorReport {
-    signs: Signs,
+    /// Whether signs are drawn as letters of ASCII.
+    ascii: bool,
     /// Columns of a line, if lines are wrapped.
     width: Option<usize>,
 }
@@ -81,16 +55,20 @@ impl ErrorReport {
     /// Lines are wrapped on a terminal only: scripts search for an unbroken `file:line:column`.
     pub(crate) fn of_stderr() -> Self {
         let terminal = std::io::stderr().is_terminal();
-        let signs = if supports_unicode::on(supports_unicode::Stream::Stderr) {
-            UNICODE
-        } else {
-            ASCII
-        };
         let columns = || terminal_size::terminal_size().map_or(80, |(width, _)| width.0.into());
         Self {
-            signs,
+            ascii: !supports_unicode::on(supports_unicode::Stream::Stderr),
             width: terminal.then(columns),
         }
+    }
+
+    /// A drawing of signs, as the stream can show it.
+    fn drawn(&self, signs: &str) -> String {
+        let shown = |sign: char| {
+            let known = SIGNS.iter().find(|(own, _)| self.ascii && *own == sign);
+            known.map_or(sign, |(_, letter)| *letter)
+        };
+        signs.chars().map(shown).collect()
     }
 
     /// A text behind an indent that is styled: one for its first line and one for the others.
@@ -98,9 +76,10 @@ impl ErrorReport {
         &self,
         out: &mut dyn fmt::Write,
         style: Style,
-        [first, next]: [&str; 2],
+        indents: [&str; 2],
         words: &str,
     ) -> fmt::Result {
+        let [first, next] = indents.map(|indent| self.drawn(indent));
         let room = |width: usize| width.saturating_sub(2 + first.width()).max(1);
         let words = printable(words);
         let wrapped = match self.width.map(room) {
@@ -108,7 +87,7 @@ impl ErrorReport {
             None => words.into_owned(),
         };
         for (index, line) in wrapped.trim_end_matches('\n').split('\n').enumerate() {
-            let indent = if index == 0 { first } else { next };
+            let indent = if index == 0 { &first } else { &next };
             let indent = if line.trim().is_empty() {
                 indent.trim_end()
             } else {
@@ -120,28 +99,14 @@ impl ErrorReport {
     }
 
     fn causes(&self, out: &mut dyn fmt::Write, error: &dyn Diagnostic) -> fmt::Result {
-        let Signs {
-            bar,
-            dash,
-            corner,
-            branch,
-            arrow,
-            ..
-        } = self.signs;
         let mut cause = error.source();
         while let Some(this) = cause {
             cause = this.source();
-            let indents = if cause.is_some() {
-                [format!("  {branch}{dash}{arrow} "), format!("  {bar}   ")]
-            } else {
-                [format!("  {corner}{dash}{arrow} "), " ".repeat(6)]
+            let indents = match cause {
+                Some(_) => ["  ├─▶ ", "  │   "],
+                None => ["  ╰─▶ ", "      "],
             };
-            self.paragraph(
-                out,
-                RED,
-                indents.each_ref().map(String::as_str),
-                &this.to_string(),
-            )?;
+            self.paragraph(out, RED, indents, &this.to_string())?;
         }
         Ok(())
     }
@@ -153,14 +118,8 @@ impl ErrorReport {
         source: &dyn SourceCode,
         label: &LabeledSpan,
     ) -> fmt::Result {
-        let Signs {
-            bar,
-            dash,
-            corner,
-            top,
-            gap,
-            ..
-        } = self.signs;
+        let [bar, gap, top, hook, end] =
+            ["│", "·", "╭─", "╰──", "╰────"].map(|one| self.drawn(one));
         let span = label.inner();
         let (Ok(place), Ok(context)) = (
             source.read_span(span, 0, 0),
@@ -173,10 +132,7 @@ impl ErrorReport {
         let margin = " ".repeat(digits + 2);
         let name = printable_line(place.name().unwrap_or_default());
         let (line, column) = (place.line() + 1, place.column() + 1);
-        writeln!(
-            out,
-            "{margin}{top}{dash}[{PLACE}{name}:{line}:{column}{PLACE:#}]"
-        )?;
+        writeln!(out, "{margin}{top}[{PLACE}{name}:{line}:{column}{PLACE:#}]")?;
         for line in &lines {
             let number = line.number;
             let text = untabbed(&line.text);
@@ -196,22 +152,21 @@ impl ErrorReport {
                 let before = " ".repeat(middle);
                 writeln!(
                     out,
-                    "{margin}{gap} {before}{MARK}{corner}{dash}{dash} {}{MARK:#}",
+                    "{margin}{gap} {before}{MARK}{hook} {}{MARK:#}",
                     printable_line(label)
                 )?;
             }
         }
-        writeln!(out, "{margin}{corner}{}", dash.repeat(4))
+        writeln!(out, "{margin}{end}")
     }
 
     /// The line below columns `from` to `to`, and the column where its label hangs.
     fn marks(&self, empty: bool, from: usize, to: usize) -> (String, usize) {
-        let Signs { dash, tee, up, .. } = self.signs;
         let middle = usize::midpoint(from, to);
-        let left = dash.repeat(middle - from);
-        let right = dash.repeat(to - middle - 1);
-        let hanger = if empty { up } else { tee };
-        (left + hanger + &right, middle)
+        let left = "─".repeat(middle - from);
+        let right = "─".repeat(to - middle - 1);
+        let hanger = if empty { "▲" } else { "┬" };
+        (self.drawn(&(left + hanger + &right)), middle)
     }
 }
 
@@ -224,12 +179,7 @@ impl ReportHandler for ErrorReport {
         if let Some(code) = error.code() {
             writeln!(out, "{RED}{code}{RED:#}\n")?;
         }
-        let Signs {
-            error: sign, bar, ..
-        } = self.signs;
-        let indents = [format!("  {sign} "), format!("  {bar} ")];
-        let indents = indents.each_ref().map(String::as_str);
-        self.paragraph(&mut out, RED, indents, &error.to_string())?;
+        self.paragraph(&mut out, RED, ["  × ", "  │ "], &error.to_string())?;
         self.causes(&mut out, error)?;
         if let (Some(source), Some(labels)) = (error.source_code(), error.labels()) {
             for label in labels {

@@ -8,7 +8,7 @@ use clap::{Args, ValueEnum};
 use gyrocal::generated::MODEL_HASH;
 use gyrocal_answer::read_platform;
 use gyrocal_document::{Screen, Standing};
-use gyrocal_record::{ExtensionReport, Gyros, LeftOut, Outputs, SCHEMA_VERSION, printable_path};
+use gyrocal_record::{ExtensionReport, Gyros, LeftOut, SCHEMA_VERSION, printable_path};
 
 use crate::outputs::{manifest, refuse_overlap};
 use crate::{Failure, Reply};
@@ -69,13 +69,8 @@ impl From<GyrosArgument> for Gyros {
 /// Runs the command; returns the text for stdout.
 pub(crate) fn run(arguments: &ExtendArguments) -> Result<Reply, Failure> {
     let inputs: Vec<&Path> = arguments.diagnosis.iter().map(PathBuf::as_path).collect();
-    refuse_overlap(
-        &inputs,
-        &[
-            ("--out", Some(&arguments.out)),
-            ("--json", arguments.json.as_deref()),
-        ],
-    )?;
+    let (out, json) = (Some(&*arguments.out), arguments.json.as_deref());
+    refuse_overlap(&inputs, &[("--out", out), ("--json", json)])?;
     let mut is_settled = true;
     let extension = match &arguments.diagnosis {
         Some(path) => {
@@ -91,20 +86,17 @@ pub(crate) fn run(arguments: &ExtendArguments) -> Result<Reply, Failure> {
         ),
     }
     .map_err(Failure::Work)?;
-    let mut outputs = Outputs::new();
-    let text = extension.model.to_toml(&arguments.out, &known())?;
-    outputs.stage(&arguments.out, text.as_bytes())?;
-    if let Some(path) = &arguments.json {
-        outputs.stage_json(path, &report(&extension, &inputs)?)?;
-    }
-    outputs.commit()?;
-    let mut shown = summary(arguments, &extension);
-    if let Some(screen) = shown.screen.as_mut().filter(|_| !is_settled) {
+    let mut screen = summary(arguments, &extension);
+    if !is_settled {
         screen.fact(
             "not settled",
             "the diagnosis did not settle these names: other effects may be the cause",
         );
     }
+    let mut shown = Reply::of(screen, String::new());
+    let text = extension.model.to_toml(&arguments.out, &known())?;
+    shown.outputs.stage(&arguments.out, text.as_bytes())?;
+    shown.write_json(json, &report(&extension, &inputs)?)?;
     Ok(shown)
 }
 
@@ -124,7 +116,7 @@ fn report(extension: &Extension, inputs: &[&Path]) -> Result<ExtensionReport, Fa
     })
 }
 
-fn summary(arguments: &ExtendArguments, extension: &Extension) -> Reply {
+fn summary(arguments: &ExtendArguments, extension: &Extension) -> Screen {
     let model = &extension.model;
     let mut screen = Screen::new(
         Standing::Good,
@@ -177,9 +169,5 @@ fn summary(arguments: &ExtendArguments, extension: &Extension) -> Reply {
         "what to do",
         "derive the filter in your package: docs/extending.md",
     );
-    let mut answer = Reply::of(screen, String::new());
-    if let Some(path) = &arguments.json {
-        answer.wrote(path, "the result for programs");
-    }
-    answer
+    screen
 }

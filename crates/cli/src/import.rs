@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use clap::{Args, Subcommand};
 use gyrocal_instruments::strapdown::{ImportReport, ImportSettings, Imported, axes_csv, import};
 use gyrocal_instruments::{Description, InstrumentError, Log, ResultFile};
-use gyrocal_record::{AXES, Outputs, printable_path};
+use gyrocal_record::{AXES, printable_path};
 
 use crate::measured::unusable;
 use crate::numbers::{angle_deg, angle_sigma_deg, positive};
@@ -104,39 +104,26 @@ fn strapdown(arguments: &StrapdownArguments) -> Result<Reply, Failure> {
         ],
     )?;
     let (imported, clock) = work(arguments).map_err(|error| unusable(&arguments.log, error))?;
-    let mut outputs = Outputs::new();
-    outputs.stage(
-        &arguments.out,
-        imported.record.to_csv(&arguments.out)?.as_bytes(),
-    )?;
-    if let Some(path) = &arguments.bench_out {
-        outputs.stage(path, imported.bench.to_toml(path)?.as_bytes())?;
-    }
-    if let Some(path) = &arguments.axes_out {
-        let text = axes_csv(&imported.record, &imported.platform_q_body);
-        outputs.stage(path, text.as_bytes())?;
-    }
-    if let Some(path) = &arguments.json {
-        let manifest = manifest("", 0, &inputs)?;
-        outputs.stage_json(path, &ResultFile::new(manifest, &imported.report))?;
-    }
-    outputs.commit()?;
     let note = clock.map_or_else(String::new, |note| format!("{note}\n\n"));
     let report = &imported.report;
     let mut answer = Reply::of(
         screen::first(arguments, report),
         note + &summary(arguments, report),
     );
-    answer.wrote(&arguments.out, "the record");
-    let others = [
-        (&arguments.bench_out, "the bench description"),
-        (&arguments.axes_out, "the axes of the gyros"),
-        (&arguments.json, "the result for programs"),
-    ];
-    for (path, what) in others {
-        if let Some(path) = path {
-            answer.wrote(path, what);
-        }
+    answer.write(Some(&arguments.out), "the record", |path| {
+        Ok(imported.record.to_csv(path)?)
+    })?;
+    let bench = arguments.bench_out.as_deref();
+    answer.write(bench, "the bench description", |path| {
+        Ok(imported.bench.to_toml(path)?)
+    })?;
+    let axes = arguments.axes_out.as_deref();
+    answer.write(axes, "the axes of the gyros", |_| {
+        Ok(axes_csv(&imported.record, &imported.platform_q_body))
+    })?;
+    if arguments.json.is_some() {
+        let result = ResultFile::new(manifest("", 0, &inputs)?, report);
+        answer.write_json(arguments.json.as_deref(), &result)?;
     }
     Ok(answer)
 }

@@ -140,9 +140,9 @@ fn start(how: &Shown) {
     show_errors_plainly();
 }
 
-/// Prints an answer or a failure; returns the exit code.
+/// Writes the files of an answer, and prints it or a failure; returns the exit code.
 fn shown(how: &Shown, answer: Result<Reply, Failure>) -> u8 {
-    match answer {
+    match answer.and_then(Reply::committed) {
         Ok(answer) => {
             let text = answer.shown(width::columns(), how.verbose > 0);
             let text = if how.quiet { "" } else { &text };

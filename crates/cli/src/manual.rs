@@ -50,14 +50,16 @@ pub(crate) fn pages(arguments: &ManArguments, mut definition: Command) -> Result
     let mut outputs = Outputs::new();
     let mut names = Vec::new();
     stage(&definition, folder, &mut outputs, &mut names)?;
-    outputs.commit()?;
     let mut screen = Screen::new(
         Standing::Neutral,
         "WROTE",
         format!("{} manual pages in {}", names.len(), printable_path(folder)),
     );
     screen.fact("pages", names.join(", "));
-    Ok(Reply::of(screen, String::new()))
+    Ok(Reply {
+        outputs,
+        ..Reply::of(screen, String::new())
+    })
 }
 
 fn stage(

@@ -13,11 +13,11 @@ use gyrocal_evaluation::{
     CalibrationSummary, CalibrationTrial, Campaign, Fingerprint, MonteCarloReport, Outcome, program,
 };
 use gyrocal_pages::of_monte_carlo;
-use gyrocal_record::{Outputs, SCHEMA_VERSION, printable_path};
+use gyrocal_record::{SCHEMA_VERSION, printable_path};
 use gyrocal_truth::{Population, Scenario};
 use miette::miette;
 
-use crate::outputs::{manifest, refuse_unwritable};
+use crate::outputs::manifest;
 use crate::page::Views;
 use crate::{Failure, Reply};
 use progress::SeedProgress;
@@ -61,14 +61,15 @@ const MAX_SEEDS: u64 = 10_000_000;
 
 /// Runs the command; returns the text for stdout.
 pub(crate) fn run(arguments: &MonteCarloArguments) -> Result<Reply, Failure> {
-    let others = [
+    let (json, views) = (arguments.json.as_deref(), &arguments.views);
+    let kept = [
         ("--results", arguments.results.as_deref()),
-        ("--json", arguments.json.as_deref()),
+        ("--json", json),
     ];
-    arguments.views.check(&[&arguments.scenario], &others)?;
-    let scenario = Scenario::read(&arguments.scenario)?;
+    views.refuse_overlap(&[&arguments.scenario], kept)?;
     // Checked before hours of work: the folders must exist.
-    refuse_unwritable(&[arguments.json.as_deref()], arguments.views.figures())?;
+    views.check(&[&arguments.scenario], json, &[])?;
+    let scenario = Scenario::read(&arguments.scenario)?;
     let seed = scenario.seed;
     let outcome = outcome(arguments, scenario)?;
     tracing::info!(resumed = outcome.resumed(), "all seeds done");
@@ -93,13 +94,8 @@ pub(crate) fn run(arguments: &MonteCarloArguments) -> Result<Reply, Failure> {
     if let Some(path) = &arguments.results {
         answer.wrote(path, "results of all runs");
     }
-    let (mut outputs, views) = (Outputs::new(), &arguments.views);
-    views.stage(&arguments.scenario, part, &mut outputs, &mut answer)?;
-    if let Some(path) = &arguments.json {
-        outputs.stage_json(path, &report)?;
-        answer.wrote(path, "the result for programs");
-    }
-    outputs.commit()?;
+    views.stage(&arguments.scenario, part, &mut answer)?;
+    answer.write_json(json, &report)?;
     Ok(answer)
 }
 

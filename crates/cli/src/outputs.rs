@@ -8,6 +8,7 @@ use gyrocal_answer::{Answer, write_text};
 use gyrocal_record::{Error, Input, InputRole, Manifest, Outputs, printable_path, shell_quoted};
 use miette::miette;
 
+use crate::reply::{RESULT, Reply};
 use crate::{Failure, pictures};
 
 /// Origin of a result: program, command line, inputs.
@@ -39,15 +40,16 @@ pub(crate) fn manifest_of(
     Ok(manifest)
 }
 
-/// Stages an answer as JSON; one with a number that is not finite is refused.
-pub(crate) fn stage_answer(
-    path: &Path,
+/// Stages an answer as JSON, if it is asked for; one with a number that is not finite is refused.
+pub(crate) fn write_answer(
+    path: Option<&Path>,
     answer: &Answer,
-    outputs: &mut Outputs,
+    reply: &mut Reply,
 ) -> Result<(), Failure> {
-    let text = write_text(answer)
-        .map_err(|error| Failure::Work(miette!("{}: {error}", printable_path(path))))?;
-    Ok(outputs.stage(path, text.as_bytes())?)
+    reply.write(path, RESULT, |path| {
+        write_text(answer)
+            .map_err(|error| Failure::Work(miette!("{}: {error}", printable_path(path))))
+    })
 }
 
 /// Refuses an output that is also an input, and two outputs in one file.
@@ -121,9 +123,17 @@ fn comes_with(path: &Path, made: &Path) -> bool {
     folder.is_some_and(|folder| identity(made).starts_with(folder))
 }
 
-/// Whether two paths lead to one file.
-pub(crate) fn same_file(a: &Path, b: &Path) -> bool {
-    identity(a) == identity(b)
+/// Refuses a later record that is one of the records.
+pub(crate) fn refuse_itself(later: Option<&Path>, records: &[PathBuf]) -> Result<(), Failure> {
+    match later {
+        Some(later) if records.iter().any(|one| identity(one) == identity(later)) => {
+            Err(Failure::Usage(format!(
+                "--validate {} is the record itself: a later one has had no part in the models",
+                printable_path(later)
+            )))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// The file behind a path, whether it or its folders exist or not.

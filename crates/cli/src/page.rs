@@ -4,39 +4,22 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use gyrocal_pages::{PageError, Part, page, pictures as charts};
-use gyrocal_record::Outputs;
 use gyrocal_report::to_html;
 use miette::miette;
 
-use crate::outputs::{refuse_overlap, refuse_unwritable};
+use crate::outputs::{self, refuse_overlap, refuse_unwritable};
 use crate::{Failure, Reply, pictures};
 
-/// The help of `--report`.
-pub(crate) const HELP: &str =
-    "Write a report to look at: one HTML file that opens in any browser, offline";
-
-/// What the file holds.
-pub(crate) const WHAT: &str = "the report, for a browser";
-
-/// Refuses, before the computation, a report that could not be written or would overwrite another file.
-pub(crate) fn check(
-    inputs: &[&Path],
-    others: &[(&str, Option<&Path>)],
-    report: Option<&Path>,
-    made: Option<&Path>,
+/// Stages a report, if it is asked for, and tells of it.
+pub(crate) fn write(
+    path: Option<&Path>,
+    parts: Vec<Part>,
+    reply: &mut Reply,
 ) -> Result<(), Failure> {
-    let mut outputs = others.to_vec();
-    outputs.push(("--report", report));
-    refuse_overlap(inputs, &outputs)?;
-    refuse_unwritable(&[report], made)
-}
-
-/// Stages a report, to be committed with the other outputs.
-pub(crate) fn stage(path: &Path, parts: Vec<Part>, outputs: &mut Outputs) -> Result<(), Failure> {
-    let html = to_html(&page(parts))
-        .map_err(|reason| Failure::Work(miette!("{}: no report: {reason}", path.display())))?;
-    outputs.stage(path, html.as_bytes())?;
-    Ok(())
+    reply.write(path, "the report, for a browser", |path| {
+        to_html(&page(parts))
+            .map_err(|reason| Failure::Work(miette!("{}: no report: {reason}", path.display())))
+    })
 }
 
 /// The part of an input, or the reason why there is none.
@@ -47,7 +30,8 @@ pub(crate) fn part(of: &Path, part: Result<Part, PageError>) -> Result<Part, Fai
 /// Files to look at: the report, and its charts as pictures.
 #[derive(Debug, Default, Args)]
 pub(crate) struct Views {
-    #[arg(long, value_name = "OUT.html", help = HELP)]
+    /// Write a report to look at: one HTML file that opens in any browser, offline.
+    #[arg(long, value_name = "OUT.html")]
     report: Option<PathBuf>,
     #[arg(long, value_name = "DIR", help = pictures::HELP)]
     figures: Option<PathBuf>,
@@ -69,27 +53,36 @@ impl Views {
         self.report.is_some() || self.figures.is_some()
     }
 
-    /// Refuses, before the computation, files that could not be written or would overwrite others.
+    /// Refuses, before the computation, files that could not be written or would overwrite others: these, the
+    /// result for programs, and the others with their options.
     pub(crate) fn check(
         &self,
         inputs: &[&Path],
+        json: Option<&Path>,
         others: &[(&str, Option<&Path>)],
     ) -> Result<(), Failure> {
-        let mut others = others.to_vec();
-        others.push(("--figures", self.figures()));
-        check(inputs, &others, self.report(), self.figures())
+        outputs::check(inputs, json, self.figures())?;
+        let all = [("--json", json)].into_iter().chain(others.iter().copied());
+        self.refuse_overlap(inputs, all)?;
+        let others = others.iter().map(|(_, path)| *path);
+        let written: Vec<_> = [self.report()].into_iter().chain(others).collect();
+        refuse_unwritable(&written, self.figures())
+    }
+
+    /// Refuses files that would overwrite an input or one another.
+    pub(crate) fn refuse_overlap<'a>(
+        &'a self,
+        inputs: &[&Path],
+        others: impl IntoIterator<Item = (&'a str, Option<&'a Path>)>,
+    ) -> Result<(), Failure> {
+        let own = [("--figures", self.figures()), ("--report", self.report())];
+        refuse_overlap(inputs, &others.into_iter().chain(own).collect::<Vec<_>>())
     }
 
     /// Stages report and pictures of an input, and tells of them.
-    pub(crate) fn stage(
-        &self,
-        of: &Path,
-        part: Part,
-        outputs: &mut Outputs,
-        answer: &mut Reply,
-    ) -> Result<(), Failure> {
+    pub(crate) fn stage(&self, of: &Path, part: Part, reply: &mut Reply) -> Result<(), Failure> {
         let drawn = |parts: &[Part]| parts.iter().cloned().flat_map(charts).collect();
-        self.stage_parts(of, vec![part], drawn, outputs, answer)
+        self.stage_parts(of, vec![part], drawn, reply)
     }
 
     /// Stages a report of several parts and the pictures that are drawn of them, and tells of both.
@@ -98,17 +91,12 @@ impl Views {
         of: &Path,
         parts: Vec<Part>,
         drawn: impl FnOnce(&[Part]) -> Vec<pictures::Named>,
-        outputs: &mut Outputs,
-        answer: &mut Reply,
+        reply: &mut Reply,
     ) -> Result<(), Failure> {
         if let Some(folder) = &self.figures {
-            let drawn = drawn(&parts);
-            answer.wrote(folder, &pictures::stage(of, &drawn, folder, outputs)?);
+            let drawn = pictures::stage(of, &drawn(&parts), folder, &mut reply.outputs)?;
+            reply.wrote(folder, &drawn);
         }
-        if let Some(path) = &self.report {
-            stage(path, parts, outputs)?;
-            answer.wrote(path, WHAT);
-        }
-        Ok(())
+        write(self.report(), parts, reply)
     }
 }

@@ -12,10 +12,10 @@ use gyrocal::generated::MODEL_HASH;
 use gyrocal_calibration::Run;
 use gyrocal_design::{Aim, PlanOptions, plan};
 use gyrocal_pages::of_plan;
-use gyrocal_record::{Bench, InputRole, Outputs, RecordFile};
+use gyrocal_record::{Bench, InputRole, RecordFile};
 
 use crate::numbers::{positive, probability};
-use crate::outputs::{self, manifest_of};
+use crate::outputs::manifest_of;
 use crate::page::Views;
 use crate::progress::Progress;
 use crate::{Failure, Reply, gyro_axes, records};
@@ -129,8 +129,7 @@ pub(crate) fn run(arguments: &PlanArguments) -> Result<Reply, Failure> {
     let inputs: Vec<&Path> = read.iter().map(|(_, path)| *path).collect();
     refuse_repeated(&arguments.limits)?;
     let json = arguments.json.as_deref();
-    outputs::check(&inputs, json, arguments.views.figures())?;
-    arguments.views.check(&inputs, &[("--json", json)])?;
+    arguments.views.check(&inputs, json, &[])?;
     let benches = arguments.pairs().map(|(_, bench)| Bench::read(bench));
     let benches: Vec<Bench> = benches.collect::<Result<_, _>>()?;
     let files = arguments.records.iter();
@@ -166,16 +165,8 @@ pub(crate) fn run(arguments: &PlanArguments) -> Result<Reply, Failure> {
     planned.manifest = manifest_of(MODEL_HASH, options.seed, &read)?;
     let part = of_plan(&planned);
     let mut answer = Reply::of_part(&part);
-    let mut outputs = Outputs::new();
-    if arguments.views.are_asked() {
-        arguments
-            .views
-            .stage(&arguments.records[0], part, &mut outputs, &mut answer)?;
-    }
-    if let Some(path) = &arguments.json {
-        outputs.stage_json(path, &planned)?;
-        answer.wrote(path, "the result for programs");
-    }
-    outputs.commit()?;
+    let views = &arguments.views;
+    views.stage(&arguments.records[0], part, &mut answer)?;
+    answer.write_json(json, &planned)?;
     Ok(answer)
 }

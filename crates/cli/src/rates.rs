@@ -6,7 +6,6 @@ use clap::Args;
 use gyrocal_instruments::rates::{RateReport, RateSettings, evaluate_rates};
 use gyrocal_instruments::{Description, Log, ResultFile};
 use gyrocal_pages::of_rates;
-use gyrocal_record::Outputs;
 
 use crate::measured::unusable;
 use crate::numbers::{angle_sigma_deg, probability};
@@ -45,16 +44,12 @@ pub(crate) struct RatesArguments {
 pub(crate) fn run(arguments: &RatesArguments) -> Result<Reply, Failure> {
     let mut inputs: Vec<&Path> = arguments.logs.iter().map(|log| &**log).collect();
     inputs.push(&arguments.log_description);
-    outputs::check(&inputs, arguments.json.as_deref(), None)?;
+    let json = arguments.json.as_deref();
+    outputs::check(&inputs, json, None)?;
     let (report, notes) = work(arguments)?;
     let manifest = manifest("", 0, &inputs)?;
     let mut answer = Reply::of_part(&of_rates(&manifest, &report, &notes));
-    let mut outputs = Outputs::new();
-    if let Some(path) = &arguments.json {
-        outputs.stage_json(path, &ResultFile::new(manifest, &report))?;
-        answer.wrote(path, "the result for programs");
-    }
-    outputs.commit()?;
+    answer.write_json(json, &ResultFile::new(manifest, &report))?;
     Ok(answer)
 }
 

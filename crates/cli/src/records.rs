@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use gyrocal_calibration::shared_rows;
 use gyrocal_instruments::{Description, read_any};
-use gyrocal_record::{Outputs, Record, RecordFile, ResultTable, printable_path};
+use gyrocal_record::{Record, RecordFile, printable_path};
 use gyrocal_words::counted;
 use miette::miette;
 
 use crate::measured::unusable;
-use crate::{Failure, Reply, terminal};
+use crate::{Failure, terminal};
 
 /// The map of records in other formats.
 #[derive(Clone, Debug, Default, Args)]
@@ -66,21 +66,6 @@ pub(crate) fn refuse_shared_rows(records: &[(&Path, &Record)]) -> Result<(), Fai
                 record.time_s[shared.first],
             )));
         }
-    }
-    Ok(())
-}
-
-/// Stages a table, if it is asked for.
-pub(crate) fn stage(
-    path: Option<&Path>,
-    table: impl FnOnce() -> ResultTable,
-    what: &str,
-    outputs: &mut Outputs,
-    answer: &mut Reply,
-) -> Result<(), Failure> {
-    if let Some(path) = path {
-        outputs.stage(path, &table().content(path)?)?;
-        answer.wrote(path, what);
     }
     Ok(())
 }

@@ -6,19 +6,25 @@ use std::path::Path;
 use gyrocal_answer::Answer;
 use gyrocal_document::{Part, Screen};
 use gyrocal_pages::{of_result, read_sections};
-use gyrocal_record::{printable, printable_path};
+use gyrocal_record::{Outputs, printable, printable_path};
+use serde::Serialize;
 
-use crate::{layout, terminal};
+use crate::{Failure, layout, terminal};
 
-/// Result of a command.
+/// What the file of `--json` holds.
+pub(crate) const RESULT: &str = "the result for programs";
+
+/// Result of a command: what it says, and the files that it writes.
 #[derive(Debug, Default)]
 pub(crate) struct Reply {
     /// What a person reads first; `None` of a command whose answer is its text.
     pub(crate) screen: Option<Screen>,
     /// The details, or the whole answer without a screen.
     pub(crate) text: String,
-    /// Files that were written, each with what it holds.
+    /// Files that are written, each with what it holds.
     pub(crate) written: Vec<(String, String)>,
+    /// Their content, until [`Reply::committed`] writes it.
+    pub(crate) outputs: Outputs,
     /// 0 unless `--exit-code` asks for another one.
     pub(crate) exit_code: u8,
 }
@@ -53,7 +59,40 @@ impl Reply {
         Self::of(part.first.clone(), details)
     }
 
-    /// Tells of a file that was written.
+    /// Stages a file, if it is asked for, and tells of it.
+    pub(crate) fn write<C: AsRef<[u8]>>(
+        &mut self,
+        path: Option<&Path>,
+        what: &str,
+        content: impl FnOnce(&Path) -> Result<C, Failure>,
+    ) -> Result<(), Failure> {
+        if let Some(path) = path {
+            self.outputs.stage(path, content(path)?.as_ref())?;
+            self.wrote(path, what);
+        }
+        Ok(())
+    }
+
+    /// Stages the result for programs, if it is asked for, and tells of it.
+    pub(crate) fn write_json(
+        &mut self,
+        path: Option<&Path>,
+        result: &impl Serialize,
+    ) -> Result<(), Failure> {
+        if let Some(path) = path {
+            self.outputs.stage_json(path, result)?;
+            self.wrote(path, RESULT);
+        }
+        Ok(())
+    }
+
+    /// Writes all staged files or none.
+    pub(crate) fn committed(mut self) -> Result<Self, Failure> {
+        std::mem::take(&mut self.outputs).commit()?;
+        Ok(self)
+    }
+
+    /// Tells of a file that is written.
     pub(crate) fn wrote(&mut self, path: &Path, what: &str) {
         self.written.push((printable_path(path), what.to_owned()));
     }

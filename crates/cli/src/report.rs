@@ -15,9 +15,7 @@ use gyrocal_pages::{
     Part, of_budget, of_calibration, of_diagnosis, of_plan, of_result, of_spread, read_sections,
     uncertainty_screen,
 };
-use gyrocal_record::{
-    Bench, CalibrationReport, InputRole, Outputs, RecordFile, SourceText, printable_path,
-};
+use gyrocal_record::{Bench, CalibrationReport, InputRole, RecordFile, SourceText, printable_path};
 use gyrocal_setup::PlatformKind;
 use miette::miette;
 use serde::de::DeserializeOwned;
@@ -105,7 +103,6 @@ pub(crate) fn run(arguments: &ReportArguments) -> Result<Reply, Failure> {
         });
     }
     let mut answer = Reply::default();
-    let mut outputs = Outputs::new();
     if arguments.uncertainty {
         let manifest = manifest(MODEL_HASH, DiagnoseOptions::default().seed, &all)?;
         let found = UncertaintyResult::new(manifest, budgets);
@@ -121,13 +118,11 @@ pub(crate) fn run(arguments: &ReportArguments) -> Result<Reply, Failure> {
             layout::layout(&read_sections(&sections)),
         );
         if let Some(path) = json {
-            outputs.stage_json(path, &found)?;
+            answer.outputs.stage_json(path, &found)?;
             answer.wrote(path, "uncertainty budgets");
         }
     }
-    page::stage(&arguments.out, parts, &mut outputs)?;
-    outputs.commit()?;
-    answer.wrote(&arguments.out, page::WHAT);
+    page::write(Some(&arguments.out), parts, &mut answer)?;
     Ok(answer)
 }
 

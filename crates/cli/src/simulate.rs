@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use gyrocal_document::{Screen, Standing};
-use gyrocal_record::{Outputs, printable_path, shell_quoted};
+use gyrocal_record::{printable_path, shell_quoted};
 use gyrocal_truth::{Hidden, Scenario, Simulation, TruthReport, simulate_watched};
 use miette::miette;
 
@@ -62,31 +62,23 @@ pub(crate) fn run(arguments: &SimulateArguments) -> Result<Reply, Failure> {
         })?;
     drop(progress);
     tracing::info!(rows = simulation.record.len(), "simulated");
-    write(arguments, &scenario, &simulation)?;
-    Ok(summary(arguments, &scenario, &simulation))
-}
-
-/// Writes all files or none.
-fn write(
-    arguments: &SimulateArguments,
-    scenario: &Scenario,
-    simulation: &Simulation,
-) -> Result<(), Failure> {
-    let mut outputs = Outputs::new();
+    let mut answer = Reply::of(summary(arguments, &scenario, &simulation), String::new());
     let record = simulation.record.to_csv(&arguments.out)?;
-    outputs.stage(&arguments.out, record.as_bytes())?;
-    if let Some(path) = &arguments.bench_out {
-        outputs.stage(path, simulation.bench.to_toml(path)?.as_bytes())?;
-    }
+    answer.outputs.stage(&arguments.out, record.as_bytes())?;
+    let bench = arguments.bench_out.as_deref();
+    answer.write(bench, "bench description", |path| {
+        Ok(simulation.bench.to_toml(path)?)
+    })?;
     if let Some(path) = &arguments.json {
         let manifest = manifest("", scenario.seed, &[&arguments.scenario])?;
-        outputs.stage_json(path, &TruthReport::new(simulation, manifest))?;
+        let truth = TruthReport::new(&simulation, manifest);
+        answer.outputs.stage_json(path, &truth)?;
+        answer.wrote(path, "the truth");
     }
-    outputs.commit()?;
-    Ok(())
+    Ok(answer)
 }
 
-fn summary(arguments: &SimulateArguments, scenario: &Scenario, simulation: &Simulation) -> Reply {
+fn summary(arguments: &SimulateArguments, scenario: &Scenario, simulation: &Simulation) -> Screen {
     let mut screen = Screen::new(
         Standing::Neutral,
         "SIMULATED",
@@ -112,12 +104,5 @@ fn summary(arguments: &SimulateArguments, scenario: &Scenario, simulation: &Simu
             screen.then(format!("gyrocal diagnose {files}"), "finds what is hidden");
         }
     }
-    let mut answer = Reply::of(screen, String::new());
-    if let Some(path) = &arguments.bench_out {
-        answer.wrote(path, "bench description");
-    }
-    if let Some(path) = &arguments.json {
-        answer.wrote(path, "the truth");
-    }
-    answer
+    screen
 }

@@ -8,7 +8,7 @@ use std::ffi::OsString;
 use std::io::IsTerminal as _;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use clap::{Args, ValueEnum};
+use clap::{Args, ColorChoice, ValueEnum as _};
 
 pub(crate) use screen::{fitted, laid_out, note};
 pub(crate) use stream::{Messages, print, warn};
@@ -26,61 +26,37 @@ pub(crate) struct Shown {
     pub(crate) quiet: bool,
     /// Colours: on a terminal unless NO_COLOR is set, always, or never.
     #[arg(long, value_name = "WHEN", default_value = "auto", global = true)]
-    pub(crate) color: Color,
-}
-
-/// Value of `--color`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Color {
-    Auto,
-    Always,
-    Never,
+    pub(crate) color: ColorChoice,
 }
 
 static QUIET: AtomicBool = AtomicBool::new(false);
 
-impl Color {
-    /// The choice of a command line that is not parsed yet, for the messages of its parser.
-    pub(crate) fn of_arguments(arguments: &[OsString]) -> Self {
-        let arguments: Vec<String> = arguments
-            .iter()
-            .map(|argument| argument.to_string_lossy().into_owned())
-            .collect();
-        let value = |(place, argument): (usize, &String)| match argument.strip_prefix("--color") {
-            Some("") => arguments.get(place + 1).cloned(),
-            Some(rest) => rest.strip_prefix('=').map(str::to_owned),
-            None => None,
-        };
-        let given = arguments.iter().enumerate().find_map(value);
-        given
-            .and_then(|given| Self::from_str(&given, false).ok())
-            .unwrap_or(Self::Auto)
-    }
-
-    /// Makes it the choice of all streams.
-    pub(crate) fn choose(self) {
-        let choice = match self {
-            Self::Auto => anstream::ColorChoice::Auto,
-            Self::Always => anstream::ColorChoice::Always,
-            Self::Never => anstream::ColorChoice::Never,
-        };
-        choice.write_global();
-    }
-
-    /// The choice for clap.
-    pub(crate) fn of_clap(self) -> clap::ColorChoice {
-        match self {
-            Self::Auto => clap::ColorChoice::Auto,
-            Self::Always => clap::ColorChoice::Always,
-            Self::Never => clap::ColorChoice::Never,
-        }
-    }
+/// The choice of a command line that is not parsed yet, for the messages of its parser.
+pub(crate) fn color_of(arguments: &[OsString]) -> ColorChoice {
+    let arguments: Vec<String> = arguments
+        .iter()
+        .map(|argument| argument.to_string_lossy().into_owned())
+        .collect();
+    let value = |(place, argument): (usize, &String)| match argument.strip_prefix("--color") {
+        Some("") => arguments.get(place + 1).cloned(),
+        Some(rest) => rest.strip_prefix('=').map(str::to_owned),
+        None => None,
+    };
+    let given = arguments.iter().enumerate().find_map(value);
+    given
+        .and_then(|given| ColorChoice::from_str(&given, false).ok())
+        .unwrap_or_default()
 }
 
 impl Shown {
     /// Makes these the settings of the program.
     pub(crate) fn apply(&self) {
-        self.color.choose();
+        let choice = match self.color {
+            ColorChoice::Auto => anstream::ColorChoice::Auto,
+            ColorChoice::Always => anstream::ColorChoice::Always,
+            ColorChoice::Never => anstream::ColorChoice::Never,
+        };
+        choice.write_global();
         QUIET.store(self.quiet, Ordering::Relaxed);
     }
 }

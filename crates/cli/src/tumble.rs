@@ -13,7 +13,6 @@ use gyrocal_instruments::{
     Description, InstrumentError, Log, ResultFile, StopSettings, find_stops, given_stops,
 };
 use gyrocal_pages::{TumbleAnswer, of_tumble};
-use gyrocal_record::Outputs;
 
 use crate::measured::{interval, unusable};
 use crate::numbers::{positive, probability};
@@ -66,13 +65,8 @@ pub(crate) struct TumbleArguments {
 pub(crate) fn run(arguments: &TumbleArguments) -> Result<Reply, Failure> {
     let mut inputs: Vec<&Path> = arguments.logs.iter().map(|log| &**log).collect();
     inputs.push(&arguments.log_description);
-    outputs::check(
-        &inputs,
-        arguments.json.as_deref(),
-        arguments.views.figures(),
-    )?;
-    let json = ("--json", arguments.json.as_deref());
-    arguments.views.check(&inputs, &[json])?;
+    let json = arguments.json.as_deref();
+    arguments.views.check(&inputs, json, &[])?;
     if arguments.logs.len() > 1 && !arguments.stop.is_empty() {
         return Err(Failure::Usage(
             "--stop gives stops of one log; with several logs the stops of each are detected"
@@ -96,14 +90,9 @@ pub(crate) fn run(arguments: &TumbleArguments) -> Result<Reply, Failure> {
         part.first.then(command, "pictures");
     }
     let mut answer = Reply::of_part(&part);
-    let mut outputs = Outputs::new();
     // The folder of pictures first: the result for programs may go there too.
-    views.stage(&arguments.logs[0], part, &mut outputs, &mut answer)?;
-    if let Some(path) = &arguments.json {
-        outputs.stage_json(path, &ResultFile::new(manifest, result))?;
-        answer.wrote(path, "the result for programs");
-    }
-    outputs.commit()?;
+    views.stage(&arguments.logs[0], part, &mut answer)?;
+    answer.write_json(json, &ResultFile::new(manifest, result))?;
     Ok(answer)
 }
 

@@ -6,7 +6,7 @@ use clap::Args;
 use gyrocal::generated::MODEL_HASH;
 use gyrocal_diagnosis::{WatchCause, WatchOptions, WatchReplay, WatchResult, watch_record};
 use gyrocal_document::{Column, Screen, Standing, Table, Words};
-use gyrocal_record::{Bench, write_json};
+use gyrocal_record::Bench;
 
 use crate::diagnose::NotDiagnosed;
 use crate::layout::layout;
@@ -59,10 +59,9 @@ pub(crate) fn run(arguments: &WatchArguments) -> Result<Reply, Failure> {
     let replay = watch_record(&record, &bench, &options)
         .map_err(|source| NotDiagnosed::new(&arguments.record, &bench, source))?;
     let mut answer = Reply::of(screen(&replay), text(&replay));
-    if let Some(path) = &arguments.json {
-        let manifest = manifest(MODEL_HASH, 0, &inputs)?;
-        write_json(path, &WatchResult::new(manifest, replay))?;
-        answer.wrote(path, "the result for programs");
+    if arguments.json.is_some() {
+        let result = WatchResult::new(manifest(MODEL_HASH, 0, &inputs)?, replay);
+        answer.write_json(arguments.json.as_deref(), &result)?;
     }
     Ok(answer)
 }

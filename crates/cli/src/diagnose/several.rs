@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use gyrocal::generated::MODEL_HASH;
 use gyrocal_diagnosis::{Gate, RecordToDiagnose, diagnose_records};
 use gyrocal_pages::{Part, of_diagnosis, of_result, pictures as charts};
-use gyrocal_record::{Bench, InputRole, Outputs, RecordFile, printable_path};
+use gyrocal_record::{Bench, InputRole, RecordFile, printable_path};
 
-use super::{DiagnoseArguments, NotDiagnosed, exit_code};
-use crate::outputs::{manifest_of, stage_answer};
+use super::{DiagnoseArguments, NotDiagnosed, finished};
+use crate::outputs::manifest_of;
 use crate::pictures::Named;
 use crate::progress::Progress;
 use crate::records::refuse_shared_rows;
@@ -61,23 +61,15 @@ pub(super) fn run(
     let result = &found.together.result;
     tracing::info!(verdict = ?result.verdict, "diagnosed");
     let mut answer = Reply::of_answer(result);
-    let mut outputs = Outputs::new();
     if arguments.views.are_asked() {
         let mut parts = vec![of_result(result)];
         for ((record, alone), bench) in arguments.records.iter().zip(&found.alone).zip(&benches) {
             parts.push(page::part(record, of_diagnosis(alone, bench))?);
         }
         let (views, record) = (&arguments.views, &arguments.records[0]);
-        views.stage_parts(record, parts, drawn, &mut outputs, &mut answer)?;
+        views.stage_parts(record, parts, drawn, &mut answer)?;
     }
-    if let Some(path) = &arguments.json {
-        stage_answer(path, result, &mut outputs)?;
-        answer.wrote(path, "the result for programs");
-    }
-    super::stage_tables(arguments, result, &mut outputs, &mut answer)?;
-    outputs.commit()?;
-    answer.exit_code = exit_code(arguments, result.verdict);
-    Ok(answer)
+    finished(arguments, result, answer)
 }
 
 /// The charts of all parts: those of the answer to all records, and of each record by its number.

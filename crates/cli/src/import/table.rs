@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use gyrocal_document::{Screen, Standing};
 use gyrocal_instruments::{Description, InstrumentError, average_file, read_record};
-use gyrocal_record::{Outputs, Record, ResultTable, printable_path, shell_quoted};
+use gyrocal_record::{Record, ResultTable, printable_path, shell_quoted};
 
 use crate::measured::unusable;
 use crate::numbers::positive;
@@ -43,9 +43,6 @@ pub(super) fn run(arguments: &TableArguments) -> Result<Reply, Failure> {
         true => ResultTable::of_record(&record).content(&arguments.out)?,
         false => text.into_bytes(),
     };
-    let mut outputs = Outputs::new();
-    outputs.stage(&arguments.out, &content)?;
-    outputs.commit()?;
     let what = format!(
         "{} rows over {:.1} s, from {rows} of {}",
         record.len(),
@@ -59,7 +56,7 @@ pub(super) fn run(arguments: &TableArguments) -> Result<Reply, Failure> {
         "effects in the record",
     );
     let mut answer = Reply::of(screen, format!("{what}\n"));
-    answer.wrote(&arguments.out, "the record");
+    answer.write(Some(&arguments.out), "the record", |_| Ok(content))?;
     Ok(answer)
 }
 

@@ -6,7 +6,8 @@ use clap::Args;
 use gyrocal_document::{Screen, Standing};
 use gyrocal_plant::LoadedPlant;
 use gyrocal_plant_codegen::{derive, settings_of_a_command};
-use gyrocal_record::{Outputs, printable_path};
+use gyrocal_record::printable_path;
+use gyrocal_words::counted;
 
 use crate::outputs::refuse_overlap;
 use crate::progress::Progress;
@@ -34,9 +35,6 @@ pub(super) fn run(arguments: &DeriveArguments) -> Result<Reply, Failure> {
     let derived = derive(&arguments.script, settings_of_a_command())?;
     drop(progress);
     let plant = LoadedPlant::parse(&derived.program, &printable_path(&arguments.script))?;
-    let mut outputs = Outputs::new();
-    outputs.stage(out, derived.program.as_bytes())?;
-    outputs.commit()?;
     let description = plant.description();
     let mut screen = Screen::new(
         Standing::Good,
@@ -54,12 +52,7 @@ pub(super) fn run(arguments: &DeriveArguments) -> Result<Reply, Failure> {
         screen.fact("left out", line);
     }
     let mut shown = Reply::of(screen, String::new());
-    shown.wrote(out, "the program, for `gyrocal plant diagnose`");
+    let what = "the program, for `gyrocal plant diagnose`";
+    shown.write(Some(out), what, |_| Ok(derived.program))?;
     Ok(shown)
-}
-
-/// A number of things, by the word for one of them.
-fn counted(count: usize, one: &str) -> String {
-    let plural = if count == 1 { "" } else { "s" };
-    format!("{count} {one}{plural}")
 }

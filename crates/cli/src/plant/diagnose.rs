@@ -9,13 +9,14 @@ use gyrocal_plant::{
     ColumnMap, DiagnosedRecords, LoadedPlant, NamedRecord, PlantError, SearchOptions,
     diagnose_records,
 };
-use gyrocal_record::{Manifest, Outputs, printable_path};
+use gyrocal_record::{Manifest, printable_path};
 use miette::Report;
 
 use crate::numbers::probability;
-use crate::outputs::{self, manifest, same_file};
+use crate::outputs::{manifest, refuse_itself};
 use crate::page::Views;
 use crate::progress::Progress;
+use crate::reply::RESULT;
 use crate::{Failure, Reply, page};
 
 /// Find what the model of this plant lacks in a record, or in several.
@@ -92,19 +93,15 @@ pub(super) fn run(
     found.together.answer.manifest = manifest.clone();
     let answer = &found.together.answer;
     let mut shown = Reply::of_part(&of_result(answer));
-    let mut outputs = Outputs::new();
     if arguments.views.are_asked() {
         let parts = parts(&found, arguments, &manifest)?;
         let together = |parts: &[Part]| parts.iter().take(1).cloned().flat_map(pictures).collect();
         let (views, record) = (&arguments.views, &arguments.records[0]);
-        views.stage_parts(record, parts, together, &mut outputs, &mut shown)?;
+        views.stage_parts(record, parts, together, &mut shown)?;
     }
-    if let Some(path) = &arguments.json {
-        let text = write_text(answer).map_err(|error| Failure::Work(Report::msg(error)))?;
-        outputs.stage(path, text.as_bytes())?;
-        shown.wrote(path, "the result for programs");
-    }
-    outputs.commit()?;
+    shown.write(arguments.json.as_deref(), RESULT, |_| {
+        write_text(answer).map_err(|error| Failure::Work(Report::msg(error)))
+    })?;
     Ok(shown)
 }
 
@@ -147,15 +144,7 @@ fn checked_inputs<'a>(
     inputs.extend(arguments.validate_columns.as_deref());
     inputs.extend(arguments.next.iter().map(PathBuf::as_path));
     let json = arguments.json.as_deref();
-    outputs::check(&inputs, json, arguments.views.figures())?;
-    arguments.views.check(&inputs, &[("--json", json)])?;
-    if let Some(later) = &arguments.validate
-        && arguments.records.iter().any(|one| same_file(later, one))
-    {
-        return Err(Failure::Usage(format!(
-            "--validate {} is the record itself: a later one has had no part in the models",
-            printable_path(later)
-        )));
-    }
+    arguments.views.check(&inputs, json, &[])?;
+    refuse_itself(arguments.validate.as_deref(), &arguments.records)?;
     Ok(inputs)
 }

@@ -7,7 +7,7 @@ use gyrocal_answer::{Answer, Subject, read_text};
 use gyrocal_document::{Screen, Standing};
 use gyrocal_plant::{Extension, LoadedPlant};
 use gyrocal_plant_codegen::{derive, settings_of_a_command};
-use gyrocal_record::{Error, InputErrorKind, Outputs, SourceText, printable_path};
+use gyrocal_record::{Error, InputErrorKind, SourceText, printable_path};
 
 use crate::progress::Progress;
 use crate::{Failure, Reply};
@@ -39,10 +39,10 @@ pub(super) fn run(arguments: &ExtendArguments) -> Result<Reply, Failure> {
     refuse_another(&source, &answer, &plant.description().name)?;
     let extension = Extension::of(&plant, &answer);
     let extended = extension.script(script.text(), &origin)?;
-    let mut outputs = Outputs::new();
-    outputs.stage(&arguments.script, extended.as_bytes())?;
-    outputs.commit()?;
-    Ok(shown(arguments, &answer, &extension))
+    let mut shown = Reply::of(screen(&answer, &extension), String::new());
+    let what = "the equations; derive or build them again";
+    shown.write(Some(&arguments.script), what, |_| Ok(extended))?;
+    Ok(shown)
 }
 
 /// Refuses the answer of anything but the plant of this name.
@@ -63,7 +63,7 @@ fn refuse_another(source: &SourceText, answer: &Answer, plant: &str) -> Result<(
     ))
 }
 
-fn shown(arguments: &ExtendArguments, answer: &Answer, extension: &Extension) -> Reply {
+fn screen(answer: &Answer, extension: &Extension) -> Screen {
     let names: Vec<&str> = extension
         .terms
         .iter()
@@ -85,10 +85,5 @@ fn shown(arguments: &ExtendArguments, answer: &Answer, extension: &Extension) ->
     for (effect, why) in &extension.left_out {
         screen.fact("left out", format!("{effect} {why}"));
     }
-    let mut shown = Reply::of(screen, String::new());
-    shown.wrote(
-        &arguments.script,
-        "the equations; derive or build them again",
-    );
-    shown
+    screen
 }
