@@ -17,6 +17,20 @@ pub struct Bars {
     pub omitted: String,
 }
 
+impl Bars {
+    /// Bars without a threshold, of which none is left out.
+    #[must_use]
+    pub fn new(title: &str, quantity: &str, groups: Vec<BarGroup>) -> Self {
+        Self {
+            title: title.to_owned(),
+            quantity: quantity.to_owned(),
+            threshold: None,
+            groups,
+            omitted: String::new(),
+        }
+    }
+}
+
 /// A group of bars.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BarGroup {
@@ -24,6 +38,17 @@ pub struct BarGroup {
     pub label: String,
     /// The bars.
     pub bars: Vec<Bar>,
+}
+
+impl BarGroup {
+    /// A group with a heading.
+    #[must_use]
+    pub fn new(label: &str, bars: impl IntoIterator<Item = Bar>) -> Self {
+        Self {
+            label: label.to_owned(),
+            bars: bars.into_iter().collect(),
+        }
+    }
 }
 
 /// A bar.

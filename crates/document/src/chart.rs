@@ -147,18 +147,40 @@ pub enum Tint {
     Other,
 }
 
-impl Tint {
-    /// Its name in style sheets.
+impl Line {
+    /// A line with a name.
     #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Measured => "measured",
-            Self::Nominal => "nominal",
-            Self::Extended => "extended",
-            Self::Expected => "expected",
-            Self::Alternative => "alternative",
-            Self::Other => "other",
+    pub fn new(label: &str, tint: Tint, kind: LineKind, values: Series) -> Self {
+        let label = label.to_owned();
+        Self {
+            label,
+            tint,
+            kind,
+            values,
         }
+    }
+}
+
+impl Band {
+    /// A band with a name between two edges.
+    #[must_use]
+    pub fn new(label: &str, tint: Tint, [lower, upper]: [Series; 2]) -> Self {
+        let label = label.to_owned();
+        Self {
+            label,
+            tint,
+            lower,
+            upper,
+        }
+    }
+}
+
+impl Level {
+    /// A line at zero, without a name.
+    #[must_use]
+    pub fn zero() -> Self {
+        let label = String::new();
+        Self { label, value: 0.0 }
     }
 }
 

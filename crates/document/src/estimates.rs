@@ -15,6 +15,26 @@ pub struct Estimates {
     pub note_head: String,
 }
 
+impl Estimates {
+    /// Estimates of these models, without a column of remarks.
+    #[must_use]
+    pub fn new(
+        title: &str,
+        models: &[(&str, Tint)],
+        rows: impl IntoIterator<Item = EstimateRow>,
+    ) -> Self {
+        let models = models.iter();
+        Self {
+            title: title.to_owned(),
+            models: models
+                .map(|(name, tint)| ((*name).to_owned(), *tint))
+                .collect(),
+            rows: rows.into_iter().collect(),
+            note_head: String::new(),
+        }
+    }
+}
+
 /// The estimates of a quantity.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EstimateRow {

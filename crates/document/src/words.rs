@@ -64,6 +64,23 @@ impl Table {
     }
 }
 
+impl Table {
+    /// A table of plain cells, with the heads of [`Column::heads`].
+    #[must_use]
+    pub fn of<Row>(title: &str, heads: &str, rows: impl IntoIterator<Item = Row>) -> Self
+    where
+        Row: IntoIterator<Item = String>,
+    {
+        Self::new(title, Column::heads(heads), rows)
+    }
+
+    /// The table; `None` without rows.
+    #[must_use]
+    pub fn filled(self) -> Option<Self> {
+        (!self.rows.is_empty()).then_some(self)
+    }
+}
+
 /// A column of a table.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
 pub struct Column {

@@ -2,7 +2,7 @@
 
 mod screen;
 
-use gyrocal_document::{Band, Chart, Column, Item, Line, LineKind, Panel, Part, Table, Tint};
+use gyrocal_document::{Band, Chart, Item, Panel, Part, Table, Tint};
 use gyrocal_instruments::{AllanColumn, AllanReport};
 use gyrocal_record::Manifest;
 use gyrocal_statistics::allan::NoiseFit;
@@ -10,6 +10,7 @@ use gyrocal_statistics::format;
 
 use crate::diagnosis::section;
 use crate::origin::{file_name, origin};
+use crate::panels::line;
 
 /// The page of Allan deviations; `clock` is what there is to tell of the clock of the log.
 #[must_use]
@@ -68,6 +69,8 @@ pub fn of_allan(manifest: &Manifest, report: &AllanReport, clock: Option<&str>) 
 }
 
 fn chart(report: &AllanReport) -> Chart {
+    let confidence = format::percent(report.confidence);
+    let interval = format!("interval, confidence {confidence}");
     let panels = report.columns.iter().map(|column| {
         let of = |value: fn(&gyrocal_instruments::AllanColumnPoint) -> f64| -> Vec<f64> {
             column.points.iter().map(value).collect()
@@ -75,21 +78,16 @@ fn chart(report: &AllanReport) -> Chart {
         Panel {
             name: column.name.clone(),
             abscissa: of(|point| point.tau_s),
-            bands: vec![Band {
-                label: format!(
-                    "interval, confidence {}",
-                    format::percent(report.confidence)
-                ),
-                tint: Tint::Measured,
-                lower: of(|point| point.low),
-                upper: of(|point| point.high),
-            }],
-            lines: vec![Line {
-                label: "deviation".to_owned(),
-                tint: Tint::Extended,
-                kind: LineKind::Solid,
-                values: of(|point| point.deviation),
-            }],
+            bands: vec![Band::new(
+                &interval,
+                Tint::Measured,
+                [of(|point| point.low), of(|point| point.high)],
+            )],
+            lines: vec![line(
+                "deviation",
+                Tint::Extended,
+                of(|point| point.deviation),
+            )],
             no_gaps: true,
             ..Panel::default()
         }
@@ -130,7 +128,7 @@ fn parts(name: &str, noise: Option<&NoiseFit>, unit: &str) -> Vec<Item> {
         let unit = format!("{unit}{}", one.part.unit_suffix());
         [one.part.description().to_owned(), estimate, interval, unit]
     });
-    let columns = Column::heads("part | > coefficient | > 95 % interval | unit");
+    let heads = "part | > coefficient | > 95 % interval | unit";
     let [from_s, to_s] = noise.range_s;
     let remark = match (noise.correlated_samples, noise.is_described()) {
         (true, _) => {
@@ -145,7 +143,7 @@ fn parts(name: &str, noise: Option<&NoiseFit>, unit: &str) -> Vec<Item> {
     };
     let p = format::p_value(noise.p_value);
     vec![
-        Table::new(name, columns, rows).into(),
+        Table::of(name, heads, rows).into(),
         Item::text(format!(
             "{name}: fitted from {from_s:.4} to {to_s:.4} s; test of fit: {p}.{remark}"
         )),
@@ -163,9 +161,9 @@ fn points(column: &AllanColumn, report: &AllanReport) -> Table {
             point.noise.to_owned(),
         ]
     });
-    let columns = Column::heads(&format!(
+    let heads = format!(
         "> averaging time, s | > deviation, {} | > low | > high | > degrees of freedom | noise",
         report.unit.replace('|', " ")
-    ));
-    Table::new(&column.name, columns, rows)
+    );
+    Table::of(&column.name, &heads, rows)
 }

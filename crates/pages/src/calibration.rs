@@ -2,7 +2,7 @@
 
 use gyrocal::generated::platform::DRIFT;
 use gyrocal_calibration::FittedPlatform;
-use gyrocal_document::{Column, EstimateRow, Estimates, Item, Part, Section, Table, Tint};
+use gyrocal_document::{EstimateRow, Estimates, Item, Part, Section, Table, Tint};
 use gyrocal_record::{Bench, CalibrationReport, Coefficient, Record};
 use gyrocal_words::{calibration, calibration_screen};
 
@@ -10,6 +10,7 @@ use crate::diagnosis::open_loop::{self, Simulated};
 use crate::diagnosis::{coefficients, section};
 use crate::error::PageError;
 use crate::origin::{file_name, origin};
+use crate::panels;
 use crate::words::listed;
 
 /// A calibrated record with the fit of the nominal model to it alone, for the charts over time.
@@ -103,30 +104,23 @@ fn estimates(report: &CalibrationReport) -> Section {
             ..EstimateRow::new(&one.name, &one.unit, values.map(value))
         }
     });
-    let mut models = vec![("nominal model".to_owned(), Tint::Nominal)];
     let effects = with.map(|with| {
         let names: Vec<&str> = with.effects.iter().map(|one| &*one.effect).collect();
-        listed(&names)
+        format!("with {}", listed(&names))
     });
-    models.extend(
-        effects
-            .as_ref()
-            .map(|names| (format!("with {names}"), Tint::Extended)),
-    );
+    let nominal = [(panels::NOMINAL, Tint::Nominal)].into_iter();
+    let extended = effects.iter().map(|with| (&**with, Tint::Extended));
+    let models: Vec<_> = nominal.chain(extended).collect();
     let estimates = Estimates {
-        title: "Drift coefficients".to_owned(),
-        models,
-        rows: rows.collect(),
         note_head: "determined".to_owned(),
+        ..Estimates::new("Drift coefficients", &models, rows)
     };
-    let mut items = vec![Item::Estimates(estimates)];
-    let columns = Column::heads("coefficient | meaning");
     let meanings = DRIFT.map(|one| [one.id, one.doc].map(str::to_owned));
-    items.push(Table::new("What they are", columns, meanings).into());
+    let meanings = Table::of("What they are", "coefficient | meaning", meanings);
     section(
         "coefficients",
         "Coefficients",
         "The nine drift coefficients with their standard deviations.",
-        items,
+        vec![Item::Estimates(estimates), meanings.into()],
     )
 }

@@ -2,7 +2,7 @@
 
 mod screen;
 
-use gyrocal_document::{Column, List, Part, Section, Table};
+use gyrocal_document::{List, Part, Section, Table};
 use gyrocal_evaluation::{CellReport, CharacteriseReport, Characteristic};
 use gyrocal_statistics::Proportion;
 
@@ -57,13 +57,12 @@ fn figures(reports: &[CellReport]) -> Section {
             ]
         })
     });
-    let columns =
-        "records | figure | holds | > target | > measured | > interval | > runs | > seeds";
+    let heads = "records | figure | holds | > target | > measured | > interval | > runs | > seeds";
     let words = "Intervals are 95 %. On fewer records than 1000 (clean: 2000), and for a family of \
                 effects, a figure holds if its one-sided 95 % bound meets the target, and does not if \
                 its 99.9 % bound misses it (of a family among all records: 95 %); otherwise the records \
                 are too few to tell.";
-    let table = Table::new("", Column::heads(columns), rows);
+    let table = Table::of("", heads, rows);
     section("figures", "Figures", words, vec![table.into()])
 }
 
@@ -88,21 +87,21 @@ fn families(reports: &[CellReport]) -> Option<Section> {
             ]
         })
     });
-    let columns = "records | effect | > runs | > detected, % | > set holds it, % | > class first, % | > set size";
+    let heads = "records | effect | > runs | > detected, % | > set holds it, % | > class first, % | > set size";
     let words =
         "i, j, k stand for axes. Columns after the detections are proportions of the detections.";
-    let table = Table::new("", Column::heads(columns), rows);
-    (!table.rows.is_empty()).then(|| section("families", "By effect", words, vec![table.into()]))
+    let table = Table::of("", heads, rows).filled()?.into();
+    Some(section("families", "By effect", words, vec![table]))
 }
 
 fn comparison(reports: &[CellReport]) -> Option<Section> {
-    let mut rows = Vec::new();
-    for report in reports.iter().filter(|report| report.comparison.len() > 1) {
-        for row in &report.comparison {
+    let compared = reports.iter().filter(|report| report.comparison.len() > 1);
+    let rows = compared.flat_map(|report| {
+        report.comparison.iter().map(|row| {
             let of_detected = |hits: Option<u64>| {
                 hits.map_or_else(String::new, |hits| share(row.of_detected(hits)))
             };
-            rows.push(vec![
+            [
                 report.title.clone(),
                 row.method.clone(),
                 row.runs.to_string(),
@@ -112,23 +111,17 @@ fn comparison(reports: &[CellReport]) -> Option<Section> {
                 of_detected(row.too_many),
                 row.mean_names
                     .map_or_else(String::new, |names| format!("{names:.2}")),
-            ]);
-        }
-    }
-    let columns = "records | method | > runs | > detected, % | > class first, % | > all named, % | > too many, % | > names";
+            ]
+        })
+    });
+    let heads = "records | method | > runs | > detected, % | > class first, % | > all named, % | > too many, % | > names";
     let words = "Detected: the method reports a fault, on fault-free records a false alarm. The next \
                 columns are proportions of the detections: the first name is of the right class; all \
                 hidden effects are named (by gyrocal in a confidence set); more effects are named than \
                 hidden. nis and ljung-box do not identify.";
-    let table = Table::new("", Column::heads(columns), rows);
-    (!table.rows.is_empty()).then(|| {
-        section(
-            "comparison",
-            "Comparison with baseline methods, on the same records",
-            words,
-            vec![table.into()],
-        )
-    })
+    let table = Table::of("", heads, rows).filled()?.into();
+    let title = "Comparison with baseline methods, on the same records";
+    Some(section("comparison", title, words, vec![table]))
 }
 
 fn share(of: Proportion) -> String {
@@ -148,15 +141,13 @@ fn holds(figure: &Characteristic) -> &'static str {
 }
 
 fn target(figure: &Characteristic) -> String {
-    figure
-        .target
-        .map_or_else(String::new, |target| target.to_string())
+    let target = figure.target;
+    target.map_or_else(String::new, |target| target.to_string())
 }
 
 fn interval(figure: &Characteristic) -> String {
-    figure
-        .interval
-        .map_or_else(String::new, |[low, high]| format!("{low:.3} to {high:.3}"))
+    let interval = figure.interval;
+    interval.map_or_else(String::new, |[low, high]| format!("{low:.3} to {high:.3}"))
 }
 
 fn measured(figure: &Characteristic) -> String {

@@ -1,6 +1,6 @@
 //! The page of a fleet.
 
-use gyrocal_document::{Bar, BarGroup, Bars, Column, Item, Part, Table, Tint};
+use gyrocal_document::{Bar, BarGroup, Bars, Item, Part, Table, Tint};
 use gyrocal_fleet::{FleetResult, prose};
 use gyrocal_statistics::format;
 use gyrocal_words::counted;
@@ -45,22 +45,14 @@ pub fn of_fleet(fleet: &FleetResult) -> Part {
         bars.sort_by(|a, b| b.value.total_cmp(&a.value));
         let more = bars.len().saturating_sub(SHOWN);
         bars.truncate(SHOWN);
+        let quantity = format!("size of the coefficient, {}", one.unit);
+        let heading = "Units, the largest first; outside of the others in the second colour";
+        let more = (more > 0).then(|| counted(more, "unit"));
         Item::Bars(Bars {
-            title: one.name.clone(),
-            quantity: format!("size of the coefficient, {}", one.unit),
-            threshold: None,
-            groups: vec![BarGroup {
-                label: "Units, the largest first; outside of the others in the second colour"
-                    .to_owned(),
-                bars,
-            }],
-            omitted: match more {
-                0 => String::new(),
-                more => format!(
-                    "{} with smaller coefficients are not shown.",
-                    counted(more, "unit")
-                ),
-            },
+            omitted: more.map_or_else(String::new, |units| {
+                format!("{units} with smaller coefficients are not shown.")
+            }),
+            ..Bars::new(&one.name, &quantity, vec![BarGroup::new(heading, bars)])
         })
     });
     sections.push(section(
@@ -95,16 +87,8 @@ fn evidence(fleet: &FleetResult) -> Bars {
         tint: Tint::Extended,
         note: format::p_value(cause.p_value),
     });
-    Bars {
-        title: "Evidence".to_owned(),
-        quantity: "logarithm of the e-value, nats".to_owned(),
-        threshold: None,
-        groups: vec![BarGroup {
-            label: "Effects".to_owned(),
-            bars: bars.collect(),
-        }],
-        omitted: String::new(),
-    }
+    let quantity = "logarithm of the e-value, nats";
+    Bars::new("Evidence", quantity, vec![BarGroup::new("Effects", bars)])
 }
 
 /// Units that are likely to have a recurring cause.
@@ -115,10 +99,6 @@ fn units(fleet: &FleetResult) -> Table {
             [cause.effect.clone(), one.unit.clone(), probability]
         })
     });
-    let columns = Column::heads("effect | unit | > probability");
-    Table::new(
-        "Units that are more likely than not to have it",
-        columns,
-        rows,
-    )
+    let title = "Units that are more likely than not to have it";
+    Table::of(title, "effect | unit | > probability", rows)
 }

@@ -2,7 +2,7 @@
 
 mod screen;
 
-use gyrocal_document::{Bar, BarGroup, Bars, Column, Item, List, Part, Section, Table, Tint};
+use gyrocal_document::{Bar, BarGroup, Bars, Item, List, Part, Section, Table, Tint};
 use gyrocal_evaluation::{
     BandedMean, CalibrationSummary, CoefficientSummary, MeasuredValue, MonteCarloReport,
 };
@@ -21,15 +21,27 @@ const COVERED: f64 = 0.95;
 #[must_use]
 pub fn of_monte_carlo(report: &MonteCarloReport) -> Part {
     let summary = &report.summary;
+    let errors = bars(
+        summary,
+        ("Errors over sigmas", "RMSE / sigma"),
+        (1.0, "as large as the sigmas say"),
+        |one| one.rmse_over_sigma,
+    );
+    let coverage = bars(
+        summary,
+        ("Truth within the 95 % interval", "share of runs"),
+        (COVERED, "95 %"),
+        |one| one.coverage,
+    );
     let coefficients = section(
         "coefficients",
         "Coefficients",
         "Statistics of a coefficient are over the runs that determine it: sigma below a tenth of the prior's. \
          In parentheses: 95 % confidence intervals.",
         vec![
-            Item::Bars(errors(summary)),
-            Item::Bars(coverage(summary)),
-            Item::from(coefficients(summary)),
+            Item::Bars(errors),
+            Item::Bars(coverage),
+            coefficients(summary).into(),
         ],
     );
     let mut sections = vec![coefficients, consistency(summary)];
@@ -52,24 +64,6 @@ fn seeds(report: &MonteCarloReport) -> String {
     format!("{what} {lowest} to {}", after.saturating_sub(1))
 }
 
-fn errors(summary: &CalibrationSummary) -> Bars {
-    bars(
-        summary,
-        ("Errors over sigmas", "RMSE / sigma"),
-        (1.0, "as large as the sigmas say"),
-        |one| one.rmse_over_sigma,
-    )
-}
-
-fn coverage(summary: &CalibrationSummary) -> Bars {
-    bars(
-        summary,
-        ("Truth within the 95 % interval", "share of runs"),
-        (COVERED, "95 %"),
-        |one| one.coverage,
-    )
-}
-
 fn bars(
     summary: &CalibrationSummary,
     (title, quantity): (&str, &str),
@@ -86,14 +80,8 @@ fn bars(
         }),
     });
     Bars {
-        title: title.to_owned(),
-        quantity: quantity.to_owned(),
         threshold: Some((threshold, meaning.to_owned())),
-        groups: vec![BarGroup {
-            label: "coefficients".to_owned(),
-            bars: bars.collect(),
-        }],
-        omitted: String::new(),
+        ..Bars::new(title, quantity, vec![BarGroup::new("coefficients", bars)])
     }
 }
 
@@ -116,9 +104,9 @@ fn coefficients(summary: &CalibrationSummary) -> Table {
             of(one.coverage),
         ]
     });
-    let columns = "coefficient | unit | > runs that determine it | > bias | > standard error | > RMSE \
+    let heads = "coefficient | unit | > runs that determine it | > bias | > standard error | > RMSE \
                    | > median sigma | > RMSE / sigma | > RMSE / Cramér-Rao bound | > in the 95 % interval";
-    Table::new("All coefficients", Column::heads(columns), rows)
+    Table::of("All coefficients", heads, rows)
 }
 
 /// A value with its interval.
@@ -160,8 +148,8 @@ fn consistency(summary: &CalibrationSummary) -> Section {
             format!("{median:.3}"),
         ])
     });
-    let columns = "statistic | > mean | > expected | > 99.9 % band | mean is | > median";
-    let mut items = vec![Table::new("", Column::heads(columns), rows).into()];
+    let heads = "statistic | > mean | > expected | > 99.9 % band | mean is | > median";
+    let mut items = vec![Table::of("", heads, rows).into()];
     if let Some(share) = summary.consistent {
         items.push(Item::text(format!(
             "Runs that pass the consistency test (NIS within its 99.9 % band): {} %.",

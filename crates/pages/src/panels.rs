@@ -9,12 +9,7 @@ pub(crate) const EXTENDED: &str = "extended model";
 
 /// A line drawn through.
 pub(crate) fn line(label: &str, tint: Tint, values: Vec<f64>) -> Line {
-    Line {
-        label: label.to_owned(),
-        tint,
-        kind: LineKind::Solid,
-        values,
-    }
+    Line::new(label, tint, LineKind::Solid, values)
 }
 
 /// Lines of the nominal and of the extended model.
@@ -43,12 +38,8 @@ pub(crate) fn simulation(
 
 /// A symmetric band of what is expected of a right model, from its half width.
 pub(crate) fn band(label: &str, half_width: &[f64]) -> Band {
-    Band {
-        label: label.to_owned(),
-        tint: Tint::Expected,
-        lower: half_width.iter().map(|half| -half).collect(),
-        upper: half_width.to_vec(),
-    }
+    let lower = half_width.iter().map(|half| -half).collect();
+    Band::new(label, Tint::Expected, [lower, half_width.to_vec()])
 }
 
 /// Correlations at the lags from one on.

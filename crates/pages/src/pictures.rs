@@ -78,16 +78,8 @@ mod tests {
                 tint: Tint::Extended,
                 note: String::new(),
             };
-            Item::Bars(Bars {
-                title: title.to_owned(),
-                quantity: "statistic".to_owned(),
-                threshold: None,
-                groups: vec![BarGroup {
-                    label: "found".to_owned(),
-                    bars: vec![bar],
-                }],
-                omitted: String::new(),
-            })
+            let groups = vec![BarGroup::new("found", [bar])];
+            Item::Bars(Bars::new(title, "statistic", groups))
         };
         let drawn = pictures(Part {
             name: "record.csv".to_owned(),

@@ -75,20 +75,12 @@ fn proposals(plan: &PlanResult) -> Bars {
     };
     let going_on = plan.going_on.iter().map(|run| bar(run, Tint::Other));
     let best = plan.proposals.iter().map(|run| bar(run, Tint::Extended));
-    Bars {
-        title: "Sigmas after record and run over those of the record so far".to_owned(),
-        quantity: "geometric mean over the nine coefficients, %".to_owned(),
-        threshold: None,
-        groups: vec![
-            BarGroup {
-                label: "Proposals, the best first for each duration".to_owned(),
-                bars: best.collect(),
-            },
-            BarGroup {
-                label: "Continuing in the present attitude".to_owned(),
-                bars: going_on.collect(),
-            },
+    Bars::new(
+        "Sigmas after record and run over those of the record so far",
+        "geometric mean over the nine coefficients, %",
+        vec![
+            BarGroup::new("Proposals, the best first for each duration", best),
+            BarGroup::new("Continuing in the present attitude", going_on),
         ],
-        omitted: String::new(),
-    }
+    )
 }

@@ -99,10 +99,8 @@ impl Ranked {
             true => "Not reported: excluded, or below the threshold",
             false => "Not reported",
         };
-        groups.push(BarGroup {
-            label: label.to_owned(),
-            bars: others.map(|(id, _)| bar(id, Tint::Other, "")).collect(),
-        });
+        let others = others.map(|(id, _)| bar(id, Tint::Other, ""));
+        groups.push(BarGroup::new(label, others));
         let omitted = rest.get(OTHERS).map(|(_, largest)| {
             format!(
                 "{} more effects are not shown; the largest statistic among them is {largest:.1}.",
@@ -128,18 +126,15 @@ impl Ranked {
     /// As bars of a page.
     pub(crate) fn bars(&self) -> Bars {
         let (groups, omitted) = self.groups();
+        let quantity = "score statistic, first search (chi-square, penalised for search)";
+        let threshold = format!(
+            "detection threshold, false-alarm probability {} over all effects",
+            format::percent(self.false_alarm_probability)
+        );
         Bars {
-            title: self.title(),
-            quantity: "score statistic, first search (chi-square, penalised for search)".to_owned(),
-            threshold: Some((
-                self.threshold,
-                format!(
-                    "detection threshold, false-alarm probability {} over all effects",
-                    format::percent(self.false_alarm_probability)
-                ),
-            )),
-            groups,
+            threshold: Some((self.threshold, threshold)),
             omitted,
+            ..Bars::new(&self.title(), quantity, groups)
         }
     }
 }

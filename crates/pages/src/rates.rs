@@ -2,7 +2,7 @@
 
 mod screen;
 
-use gyrocal_document::{Column, EstimateRow, Estimates, Item, Part, Section, Table, Tint};
+use gyrocal_document::{EstimateRow, Estimates, Item, Part, Section, Table, Tint};
 use gyrocal_instruments::rates::{GyroRates, RateReport};
 use gyrocal_record::{Input, Manifest};
 use gyrocal_statistics::{NORMAL_97_5, format};
@@ -49,9 +49,9 @@ fn means(logs: &[Input], report: &RateReport, clocks: &[String]) -> Section {
         let vertical = "vertical, Earth rate and bias".to_owned();
         gyros.chain([row(vertical, rate, NORMAL_97_5 * sigma)])
     });
-    let columns = Column::heads("log | of | > mean of the log, deg/h | > 95 %");
+    let heads = "log | of | > mean of the log, deg/h | > 95 %";
     let mut items: Vec<Item> = clocks.iter().map(Item::text).collect();
-    items.push(Table::new("", columns, rows).into());
+    items.push(Table::of("", heads, rows).into());
     let lead = format!(
         "The heading is unknown, and Earth rate is {:.4} deg/h up and {:.4} deg/h north.",
         report.earth_vertical_deg_per_h, report.earth_horizontal_deg_per_h,
@@ -62,12 +62,8 @@ fn means(logs: &[Input], report: &RateReport, clocks: &[String]) -> Section {
 fn of_gyro(gyro: &GyroRates, logs: usize) -> Section {
     let rows = gyro.coefficients.iter();
     let rows = rows.map(|one| EstimateRow::new(&one.name, &one.unit, [[one.estimate, one.sigma]]));
-    let mut items = vec![Item::Estimates(Estimates {
-        title: String::new(),
-        models: vec![("estimate".to_owned(), Tint::Extended)],
-        rows: rows.collect(),
-        note_head: String::new(),
-    })];
+    let models = [("estimate", Tint::Extended)];
+    let mut items = vec![Item::Estimates(Estimates::new("", &models, rows))];
     if !gyro.undetermined.is_empty() {
         let names = gyro.undetermined.join(", ");
         items.push(Item::text(format!("Not determined in addition: {names}.")));

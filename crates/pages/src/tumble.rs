@@ -4,7 +4,7 @@ mod charts;
 mod screen;
 mod sensors;
 
-use gyrocal_document::{Column, EstimateRow, Estimates, Item, List, Part, Section, Table, Tint};
+use gyrocal_document::{EstimateRow, Estimates, Item, List, Part, Section, Table, Tint};
 use gyrocal_instruments::multi_position::{
     CoefficientReport, FewPositionLaw, FewPositionReport, Finding, MultiPositionReport,
     PreparedTest, TumbleResult,
@@ -84,15 +84,11 @@ fn terms(answer: &TumbleAnswer<'_>, report: &MultiPositionReport) -> Section {
                 format::p_cell(one.p_value),
             ]
         });
-        let columns = "term | > estimate ± σ | unit | > sigmas | > F | > p, family-wise";
+        let title = "Significant terms, in the order of finding";
+        let heads = "term | > estimate ± σ | unit | > sigmas | > F | > p, family-wise";
         items = vec![
             Item::Chart(charts::contributions(answer.prepared, report)),
-            Table::new(
-                "Significant terms, in the order of finding",
-                Column::heads(columns),
-                rows,
-            )
-            .into(),
+            Table::of(title, heads, rows).into(),
         ];
         let title = "What else each may be, with what its log-likelihood lacks";
         let list = List::of(title, report.findings.iter().map(rivals));
@@ -155,15 +151,11 @@ fn laws(answer: &TumbleAnswer<'_>, report: &MultiPositionReport) -> Section {
             EstimateRow::new(&one.name, &one.unit, [before, [one.estimate, one.sigma]])
         })
     });
-    let estimates = Estimates {
-        title: "Drift laws; sigmas include the scatter beyond the standard errors".to_owned(),
-        models: vec![
-            ("nominal law".to_owned(), Tint::Nominal),
-            ("extended law".to_owned(), Tint::Extended),
-        ],
-        rows: rows.collect(),
-        note_head: String::new(),
-    };
+    let estimates = Estimates::new(
+        "Drift laws; sigmas include the scatter beyond the standard errors",
+        &charts::LAWS,
+        rows,
+    );
     let fits = report.gyros.iter().flat_map(|gyro| {
         [
             ("nominal", &gyro.nominal, &gyro.nominal_against_catalogue),
@@ -182,18 +174,15 @@ fn laws(answer: &TumbleAnswer<'_>, report: &MultiPositionReport) -> Section {
             ]
         })
     });
-    let columns = "law | > chi-square | > degrees of freedom | > p | > scatter, deg/h | > all further terms | > p of these";
-    let fits = Table::new(
+    let heads = "law | > chi-square | > degrees of freedom | > p | > scatter, deg/h | > all further terms | > p of these";
+    let fits = Table::of(
         "Fits: scatter beyond the standard errors of the stops, and all terms of the catalogue against the law",
-        Column::heads(columns),
+        heads,
         fits,
     );
     let mut items = vec![Item::Estimates(estimates), fits.into()];
-    for gyro in report
-        .gyros
-        .iter()
-        .filter(|gyro| !gyro.undetermined.is_empty())
-    {
+    let gyros = report.gyros.iter();
+    for gyro in gyros.filter(|gyro| !gyro.undetermined.is_empty()) {
         items.push(Item::text(format!(
             "{}: not identifiable from these attitudes, given the others: {}.",
             gyro.gyro,
@@ -267,14 +256,7 @@ fn controls(answer: &TumbleAnswer<'_>, report: &MultiPositionReport) -> Section 
         )));
         let found = gain.found_in_blocks.iter();
         let rows = found.map(|(term, count)| [term.clone(), format!("{count} of {}", gain.blocks)]);
-        items.push(
-            Table::new(
-                "Terms found without a block",
-                Column::heads("term | > found in"),
-                rows,
-            )
-            .into(),
-        );
+        items.push(Table::of("Terms found without a block", "term | > found in", rows).into());
     }
     section(
         "controls",
@@ -294,13 +276,13 @@ fn few_terms(answer: &TumbleAnswer<'_>, report: &FewPositionReport) -> Section {
             format::p_cell(one.p_value),
         ]
     });
-    let columns = Column::heads("term | > estimate ± σ | unit | > p, family-wise");
+    let heads = "term | > estimate ± σ | unit | > p, family-wise";
     let others = report.findings.iter();
     let others = others.map(|one| alternatives(&one.effect, &one.alternatives));
     let items = match List::of("What else each may be", others) {
         None => vec![no_term(answer)],
         Some(list) => vec![
-            Table::new("Significant terms", columns, rows).into(),
+            Table::of("Significant terms", heads, rows).into(),
             list.into(),
         ],
     };
@@ -313,12 +295,9 @@ fn few_laws(answer: &TumbleAnswer<'_>, report: &FewPositionReport) -> Section {
     let row = |one: &CoefficientReport| {
         EstimateRow::new(&one.name, &one.unit, [[one.estimate, one.sigma]])
     };
-    let mut items = vec![Item::Estimates(Estimates {
-        title: "Drift laws".to_owned(),
-        models: vec![("estimate".to_owned(), Tint::Extended)],
-        rows: coefficients.map(row).collect(),
-        note_head: String::new(),
-    })];
+    let models = [("estimate", Tint::Extended)];
+    let estimates = Estimates::new("Drift laws", &models, coefficients.map(row));
+    let mut items = vec![Item::Estimates(estimates)];
     items.extend(report.gyros.iter().map(|gyro| Item::text(few_fit(gyro))));
     items.extend(not_identifiable(answer));
     let lead = format!("The terms that {} positions determine.", report.stops);

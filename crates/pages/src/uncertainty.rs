@@ -3,7 +3,7 @@
 use gyrocal_diagnosis::{
     CoefficientUncertainty, NOT_STATED, RecordUncertainty, RunSpread, UncertaintyResult, by_source,
 };
-use gyrocal_document::{Column, Item, Screen, Section, Standing, Table};
+use gyrocal_document::{Item, Screen, Section, Standing, Table};
 use gyrocal_statistics::format;
 
 use crate::diagnosis::section;
@@ -56,10 +56,10 @@ pub fn uncertainty_screen(found: &UncertaintyResult) -> Screen {
 /// of the test.
 #[must_use]
 pub fn of_budget(budget: &RecordUncertainty) -> Section {
-    let columns = "term | coefficient | > estimate | > standard uncertainty | > effective degrees of freedom \
+    let heads = "term | coefficient | > estimate | > standard uncertainty | > effective degrees of freedom \
                    | > coverage factor | > expanded, 95 % | unit";
     let rows = budget.coefficients.iter().map(result_row);
-    let results = Table::new("Results", Column::heads(columns), rows);
+    let results = Table::of("Results", heads, rows);
     let rows = budget.coefficients.iter().flat_map(|one| {
         let sources = by_source(one).into_iter();
         sources.map(|(source, kind, distribution, standard)| {
@@ -67,17 +67,14 @@ pub fn of_budget(budget: &RecordUncertainty) -> Section {
                 0.0 => "0".to_owned(),
                 some => format!("{some:.1e}"),
             };
-            let words = [source, kind.letter(), distribution].map(str::to_owned);
-            [
-                vec![one.name.clone()],
-                words.into(),
-                vec![standard, one.unit.clone()],
-            ]
-            .concat()
+            let [source, kind, distribution] =
+                [source, kind.letter(), distribution].map(str::to_owned);
+            let (name, unit) = (one.name.clone(), one.unit.clone());
+            [name, source, kind, distribution, standard, unit]
         })
     });
-    let columns = "coefficient | source | type | distribution | > standard uncertainty | unit";
-    let contributions = Table::new("Contributions", Column::heads(columns), rows);
+    let heads = "coefficient | source | type | distribution | > standard uncertainty | unit";
+    let contributions = Table::of("Contributions", heads, rows);
     let mut lead = format!(
         "Combined by the GUM (JCGM 100:2008). Type A is evaluated from the record, type B from what the \
          bench description declares. {NOT_STATED}"
@@ -92,11 +89,9 @@ pub fn of_budget(budget: &RecordUncertainty) -> Section {
         "uncertainty",
         "Uncertainty",
         &lead,
-        vec![
-            Item::from(results),
-            Item::from(contributions),
-            Item::from(conditions(budget)),
-        ],
+        [results, contributions, conditions(budget)]
+            .map(Item::from)
+            .into(),
     )
 }
 
@@ -116,10 +111,10 @@ pub fn of_spread(spread: &RunSpread) -> Section {
             one.unit.clone(),
         ]
     });
-    let columns = "term | coefficient | > mean | > standard deviation between runs \
+    let heads = "term | coefficient | > mean | > standard deviation between runs \
                    | > expected of the uncertainties | > p | scatter | unit";
     let title = format!("Scatter over {} runs", spread.runs);
-    let table = Table::new(&title, Column::heads(columns), rows);
+    let table = Table::of(&title, heads, rows);
     section(
         "spread",
         "Scatter over runs",
@@ -193,5 +188,5 @@ fn conditions(budget: &RecordUncertainty) -> Table {
         ),
     ];
     let rows = rows.map(|(name, value)| [name.to_owned(), value]);
-    Table::new("Test conditions", Column::heads("condition | value"), rows)
+    Table::of("Test conditions", "condition | value", rows)
 }

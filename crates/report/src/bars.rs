@@ -132,15 +132,12 @@ mod tests {
             tint: Tint::Extended,
             note: String::new(),
         };
+        let found = [bar("gyro_y.g_z", 12.5), bar("gyro_x.ramp", f64::NAN)];
+        let groups = vec![BarGroup::new("finding 1", found)];
         let bars = Bars {
-            title: "Ranking".to_owned(),
-            quantity: "statistic".to_owned(),
             threshold: Some((3.0, "detection threshold".to_owned())),
-            groups: vec![BarGroup {
-                label: "finding 1".to_owned(),
-                bars: vec![bar("gyro_y.g_z", 12.5), bar("gyro_x.ramp", f64::NAN)],
-            }],
             omitted: "others are left out".to_owned(),
+            ..Bars::new("Ranking", "statistic", groups)
         };
         let svg = bars.to_svg().unwrap();
         for words in [

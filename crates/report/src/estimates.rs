@@ -150,20 +150,14 @@ mod tests {
 
     #[test]
     fn estimates_are_compared() {
+        let row = EstimateRow {
+            note: "+3.1".to_owned(),
+            ..EstimateRow::new("gyro_x.bias", "deg/h", [[0.5, 0.1]])
+        };
+        let models = [("nominal model", Tint::Nominal)];
         let mut estimates = Estimates {
-            title: "Coefficients".to_owned(),
-            models: vec![("nominal model".to_owned(), Tint::Nominal)],
-            rows: vec![EstimateRow {
-                name: "gyro_x.bias".to_owned(),
-                unit: "deg/h".to_owned(),
-                values: vec![ValueWithSigma {
-                    value: 0.5,
-                    sigma: 0.1,
-                }],
-                note: "+3.1".to_owned(),
-                strong: false,
-            }],
             note_head: "change".to_owned(),
+            ..Estimates::new("Coefficients", &models, [row])
         };
         let svg = estimates.to_svg().unwrap();
         for words in ["gyro_x.bias", "nominal model", "+3.1", "panel: change."] {

@@ -259,11 +259,8 @@ mod tests {
     use gyrocal_document::{Band, Level, Mark};
 
     fn chart(logarithmic: bool) -> Chart {
-        let line = |label: &str, kind, values: [f64; 3]| Line {
-            label: label.to_owned(),
-            tint: Tint::Nominal,
-            kind,
-            values: values.to_vec(),
+        let line = |label: &str, kind, values: [f64; 3]| {
+            Line::new(label, Tint::Nominal, kind, values.to_vec())
         };
         Chart {
             title: "A statement".to_owned(),
@@ -278,12 +275,11 @@ mod tests {
             panels: vec![Panel {
                 name: "gyro x".to_owned(),
                 abscissa: vec![1.0, 10.0, 100.0],
-                bands: vec![Band {
-                    label: "interval".to_owned(),
-                    tint: Tint::Measured,
-                    lower: vec![0.9, f64::NAN, 0.09],
-                    upper: vec![1.1, 0.4, 0.11],
-                }],
+                bands: vec![Band::new(
+                    "interval",
+                    Tint::Measured,
+                    [vec![0.9, f64::NAN, 0.09], vec![1.1, 0.4, 0.11]],
+                )],
                 lines: vec![
                     line("through", LineKind::Solid, [1.0, 0.3, 0.1]),
                     line("points", LineKind::Points, [1.0, 0.3, f64::NAN]),

@@ -10,7 +10,7 @@ use gyrocal_record::Record;
 
 use super::{accepted, section as titled};
 use crate::error::PageError;
-use crate::panels::line;
+use crate::panels::{EXTENDED, NOMINAL, line};
 use crate::words::listed;
 
 /// A change of a coefficient from which on it is marked, in claimed sigmas.
@@ -25,10 +25,7 @@ pub(super) fn section(result: &Answer, convergence: Option<Chart>) -> Option<Sec
     let all = result.coefficients.as_ref()?;
     let models = [Some(&all.nominal), all.extended.as_ref()];
     let models: Vec<_> = models.into_iter().flatten().collect();
-    let labels = [
-        ("nominal model".to_owned(), Tint::Nominal),
-        ("extended model".to_owned(), Tint::Extended),
-    ];
+    let labels = [(NOMINAL, Tint::Nominal), (EXTENDED, Tint::Extended)];
     let shifts = result.gain.as_ref().filter(|_| models.len() > 1);
     let rows = all.nominal.iter().enumerate().map(|(place, one)| {
         let note = shifts.map(|gain| change(&gain.coefficient_shift, &one.name));
@@ -45,18 +42,13 @@ pub(super) fn section(result: &Answer, convergence: Option<Chart>) -> Option<Sec
         }
     });
     let effects = accepted(result);
+    let title = match listed(&effects) {
+        none if none.is_empty() => "Drift coefficients of the nominal model".to_owned(),
+        effects => format!("Drift coefficients without and with {effects} in the model"),
+    };
     let mut items = vec![Item::Estimates(Estimates {
-        title: if effects.is_empty() {
-            "Drift coefficients of the nominal model".to_owned()
-        } else {
-            format!(
-                "Drift coefficients without and with {} in the model",
-                listed(&effects)
-            )
-        },
-        models: labels.into_iter().take(models.len()).collect(),
-        rows: rows.collect(),
         note_head: shifts.map_or_else(String::new, |_| "change, σ of the nominal fit".to_owned()),
+        ..Estimates::new(&title, &labels[..models.len()], rows)
     })];
     items.extend(convergence.map(Item::Chart));
     items.extend(gyrocal_words::over_sets(all).map(Item::from));
@@ -95,19 +87,9 @@ pub(crate) fn convergence(
             scale_from: settled,
             ..Panel::default()
         };
-        add(
-            &mut panel,
-            ("nominal model", Tint::Nominal),
-            &nominal,
-            index,
-        );
+        add(&mut panel, (NOMINAL, Tint::Nominal), &nominal, index);
         if let Some(extended) = &extended {
-            add(
-                &mut panel,
-                ("extended model", Tint::Extended),
-                extended,
-                index,
-            );
+            add(&mut panel, (EXTENDED, Tint::Extended), extended, index);
         }
         panel
     });
@@ -140,12 +122,9 @@ fn add(panel: &mut Panel, (label, tint): (&str, Tint), fitted: &[Option<Fitted>]
             .map(|(estimate, sigma)| estimate + sign * 2.0 * sigma)
             .collect()
     };
-    panel.bands.push(Band {
-        label: format!("{label}, ±2σ"),
-        tint,
-        lower: edge(-1.0),
-        upper: edge(1.0),
-    });
+    let name = format!("{label}, ±2σ");
+    let edges = [edge(-1.0), edge(1.0)];
+    panel.bands.push(Band::new(&name, tint, edges));
     panel.lines.push(line(label, tint, estimates));
 }
 

@@ -144,22 +144,18 @@ fn panel(name: &str, (covariate, unit): (&str, &str), bins: &[BinMean]) -> Panel
         note: format!("{values} rows"),
         own_abscissa: Some((covariate.to_owned(), unit.to_owned())),
         abscissa: bins.iter().map(|bin| bin.at).collect(),
-        bands: vec![Band {
-            label: "±2 standard errors".to_owned(),
-            tint: Tint::Nominal,
-            lower: edge(-1.0),
-            upper: edge(1.0),
-        }],
-        lines: vec![Line {
-            label: "mean of a bin".to_owned(),
-            tint: Tint::Nominal,
-            kind: LineKind::Points,
-            values: bins.iter().map(|bin| bin.mean).collect(),
-        }],
-        levels: vec![Level {
-            label: String::new(),
-            value: 0.0,
-        }],
+        bands: vec![Band::new(
+            "±2 standard errors",
+            Tint::Nominal,
+            [edge(-1.0), edge(1.0)],
+        )],
+        lines: vec![Line::new(
+            "mean of a bin",
+            Tint::Nominal,
+            LineKind::Points,
+            edge(0.0),
+        )],
+        levels: vec![Level::zero()],
         no_gaps: true,
         ..Panel::default()
     }

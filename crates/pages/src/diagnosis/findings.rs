@@ -1,7 +1,7 @@
 //! What the record shows: effects with their sizes, each record alone, errors of the set-up.
 
 use gyrocal_answer::{AlternativeKind, Answer};
-use gyrocal_document::{Column, Item, List, Section, Table};
+use gyrocal_document::{Item, List, Section, Table};
 use gyrocal_statistics::format::percent;
 
 use super::section;
@@ -43,12 +43,10 @@ pub(super) fn records(result: &Answer) -> Option<Section> {
             alone.map_or_else(|| one.why_not_alone.clone(), gyrocal_words::alone),
         ]
     });
-    let columns = Column::heads("> record | name | > rows | alone");
-    let table = Table::new("Each record alone", columns, rows);
-    (!result.records.is_empty()).then(|| {
-        let lead = "The answer of each record by itself.";
-        section("records", "Records", lead, vec![Item::from(table)])
-    })
+    let heads = "> record | name | > rows | alone";
+    let table = Table::of("Each record alone", heads, rows).filled()?.into();
+    let lead = "The answer of each record by itself.";
+    Some(section("records", "Records", lead, vec![table]))
 }
 
 /// Errors of the set-up; `None` without any.

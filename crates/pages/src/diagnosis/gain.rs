@@ -2,12 +2,10 @@
 
 use gyrocal_answer::{Answer, Gain, Prediction};
 use gyrocal_diagnosis::LaterPrediction;
-use gyrocal_document::{
-    Chart, Column, Item, Line, LineKind, Panel, Section, Table, TimeAxis, Tint,
-};
+use gyrocal_document::{Chart, Item, Level, Line, LineKind, Panel, Section, Table, TimeAxis, Tint};
 
 use super::section as titled;
-use crate::panels::line;
+use crate::panels::{EXTENDED, NOMINAL, line};
 use crate::words::{listed, micro_g};
 
 /// `None` without a cause and a later record.
@@ -64,24 +62,14 @@ fn blocks(gain: &Gain) -> Chart {
         let kept = |nats: &Option<f64>| nats.filter(|nats| nats * sign > 0.0).unwrap_or(f64::NAN);
         nats.iter().map(kept).collect()
     };
-    let bars = |label: &str, tint, values| Line {
-        label: label.to_owned(),
-        tint,
-        kind: LineKind::Bars,
-        values,
-    };
     let effects: Vec<&str> = gain.effects.iter().map(String::as_str).collect();
-    let mut lines = vec![bars(
-        "extended model predicts better",
-        Tint::Extended,
-        part(1.0),
-    )];
+    let bars = |model: &str, tint, sign| {
+        let label = format!("{model} predicts better");
+        Line::new(&label, tint, LineKind::Bars, part(sign))
+    };
+    let mut lines = vec![bars(EXTENDED, Tint::Extended, 1.0)];
     if better < nats.len() {
-        lines.push(bars(
-            "nominal model predicts better",
-            Tint::Nominal,
-            part(-1.0),
-        ));
+        lines.push(bars(NOMINAL, Tint::Nominal, -1.0));
     }
     Chart {
         title: format!(
@@ -102,10 +90,7 @@ fn blocks(gain: &Gain) -> Chart {
             name: "cross-validation".to_owned(),
             abscissa: (1..=nats.len()).map(|block| block as f64).collect(),
             lines,
-            levels: vec![gyrocal_document::Level {
-                label: String::new(),
-                value: 0.0,
-            }],
+            levels: vec![Level::zero()],
             no_gaps: true,
             ..Panel::default()
         }],
@@ -137,16 +122,8 @@ fn drift(later: &LaterPrediction) -> Chart {
                     kind: LineKind::Dashed,
                     ..line("expected", Tint::Expected, errors.expected_arcmin.clone())
                 },
-                line(
-                    "nominal model",
-                    Tint::Nominal,
-                    errors.nominal_arcmin.clone(),
-                ),
-                line(
-                    "extended model",
-                    Tint::Extended,
-                    errors.extended_arcmin.clone(),
-                ),
+                line(NOMINAL, Tint::Nominal, errors.nominal_arcmin.clone()),
+                line(EXTENDED, Tint::Extended, errors.extended_arcmin.clone()),
             ],
             no_gaps: true,
             ..Panel::default()
@@ -168,21 +145,16 @@ fn figures(gain: &Gain) -> Table {
         ]
     }));
     let later = gain.validation.as_ref();
-    rows.extend(
-        later
-            .and_then(|later| later.compensation.as_ref())
-            .map(|error| {
-                [
-                    format!(
-                        "attitude error in the later record after {:.1} h",
-                        error.after_h
-                    ),
-                    format!("{:.2} arcmin", error.nominal_arcmin),
-                    format!("{:.2} arcmin", error.extended_arcmin),
-                    format!("{:.2} arcmin", error.expected_arcmin),
-                ]
-            }),
-    );
+    let compensation = later.and_then(|later| later.compensation.as_ref());
+    rows.extend(compensation.map(|error| {
+        let after_h = error.after_h;
+        [
+            format!("attitude error in the later record after {after_h:.1} h"),
+            format!("{:.2} arcmin", error.nominal_arcmin),
+            format!("{:.2} arcmin", error.extended_arcmin),
+            format!("{:.2} arcmin", error.expected_arcmin),
+        ]
+    }));
     rows.extend(later.map(|later| {
         [
             "predictive log score of the later record, extended less nominal".to_owned(),
@@ -191,6 +163,6 @@ fn figures(gain: &Gain) -> Table {
             String::new(),
         ]
     }));
-    let columns = Column::heads("figure | > nominal | > extended | > expected");
-    Table::new("Nominal and extended model", columns, rows)
+    let heads = "figure | > nominal | > extended | > expected";
+    Table::of("Nominal and extended model", heads, rows)
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use gyrocal_answer::{Answer, Verdict};
-use gyrocal_document::{Column, Item, List, Section, Table};
+use gyrocal_document::{Item, List, Section, Table};
 use gyrocal_statistics::format;
 use gyrocal_words::counted;
 
@@ -53,9 +53,8 @@ fn alternatives(result: &Answer) -> Option<Table> {
             ]
         })
     });
-    let rows: Vec<_> = rows.collect();
-    let columns = Column::heads("effect | in the place of | likelihood | parameters");
-    (!rows.is_empty()).then(|| Table::new("Alternatives", columns, rows))
+    let heads = "effect | in the place of | likelihood | parameters";
+    Table::of("Alternatives", heads, rows).filled()
 }
 
 /// Effects that would not be detected, and those that were not tested, by reason.
@@ -77,15 +76,15 @@ fn undetected(result: &Answer) -> Vec<Item> {
                 .push(&effect.effect),
         }
     }
-    let columns = Column::heads("effect | reason | > typical size | > chance of detection");
-    let title = "Not detectable in this record";
-    let table = (!rows.is_empty()).then(|| Item::from(Table::new(title, columns, rows)));
+    let heads = "effect | reason | > typical size | > chance of detection";
+    let table = Table::of("Not detectable in this record", heads, rows).filled();
     let untested = by_reason.into_iter().map(|(why, effects)| {
         let count = counted(effects.len(), "effect");
         format!("{count} not tested ({why}): {}", effects.join(", "))
     });
     let untested = List::of("Not tested", untested).map(Item::from);
-    table.into_iter().chain(untested).collect()
+    let table = table.map(Item::from).into_iter();
+    table.chain(untested).collect()
 }
 
 /// The command that plans the next run.

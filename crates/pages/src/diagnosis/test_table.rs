@@ -1,7 +1,7 @@
 //! The tests beside the search, in one table.
 
 use gyrocal_answer::{AllanCourse, Answer, FilterTest, ResidualTest, ResidualVerdict, Residuals};
-use gyrocal_document::{Column, Table};
+use gyrocal_document::Table;
 use gyrocal_record::AXES;
 use gyrocal_statistics::format::{self, p_cell, short};
 use gyrocal_words::counted;
@@ -29,8 +29,8 @@ pub(super) fn table(result: &Answer) -> Table {
         let p = p.map_or_else(String::new, p_cell);
         [model.to_owned(), name, found, p]
     });
-    let columns = Column::heads("model | test | found | > p");
-    Table::new("Tests, and probability of as much by chance", columns, rows)
+    let title = "Tests, and probability of as much by chance";
+    Table::of(title, "model | test | found | > p", rows)
 }
 
 fn ljung_box(statistic: f64, degrees_of_freedom: usize) -> String {

@@ -1,6 +1,6 @@
 //! The first screen of a calibration over many simulated records.
 
-use gyrocal_document::{Column, Screen, Standing, Table};
+use gyrocal_document::{Screen, Standing, Table};
 use gyrocal_evaluation::{BandedMean, CalibrationSummary, MonteCarloReport};
 use gyrocal_statistics::format;
 
@@ -10,7 +10,6 @@ use crate::origin::named;
 /// Whether errors are as large as the sigmas say, and by how much they are not.
 pub(super) fn first(report: &MonteCarloReport) -> Screen {
     let summary = &report.summary;
-    let bands = [summary.nees_determined, summary.nis];
     let said = format!(
         "{} runs, {} failed: {}",
         summary.runs,
@@ -21,26 +20,19 @@ pub(super) fn first(report: &MonteCarloReport) -> Screen {
         true => Screen::new(Standing::Good, "CONSISTENT", said),
         false => Screen::new(Standing::Bad, "INCONSISTENT", said),
     };
-    for (name, banded) in ["errors (NEES)", "innovations (NIS)"]
-        .into_iter()
-        .zip(bands)
-    {
-        screen.fact(
-            name,
-            banded.map_or_else(String::new, |banded| band(&banded)),
-        );
+    if let Some(errors) = &summary.nees_determined {
+        screen.fact("errors (NEES)", band(errors));
+    }
+    if let Some(innovations) = &summary.nis {
+        screen.fact("innovations (NIS)", band(innovations));
     }
     if let Some(share) = summary.consistent {
-        screen.fact(
-            "runs in their band",
-            format!("{} %", measured(share, 100.0, 1)),
-        );
+        let share = measured(share, 100.0, 1);
+        screen.fact("runs in their band", format!("{share} %"));
     }
-    for failure in summary.failures.iter().take(1) {
-        screen.fact(
-            "first failure",
-            format!("seed {}: {}", failure.seed, failure.message),
-        );
+    if let Some(failure) = summary.failures.first() {
+        let words = format!("seed {}: {}", failure.seed, failure.message);
+        screen.fact("first failure", words);
     }
     let scenario = named(&report.manifest.inputs);
     screen.fact("scenario", format!("{scenario}: {}", seeds(report)));
@@ -67,7 +59,7 @@ fn table(summary: &CalibrationSummary) -> Table {
             _ => String::new(),
         };
         let ratio = one.rmse_over_sigma;
-        vec![
+        [
             one.name.clone(),
             bias,
             ratio.map_or_else(String::new, |found| measured(found, 1.0, 2)),
@@ -75,9 +67,5 @@ fn table(summary: &CalibrationSummary) -> Table {
                 .map_or_else(String::new, |found| format!("{:.0} %", 100.0 * found.value)),
         ]
     });
-    Table::new(
-        "",
-        Column::heads("coefficient | bias | RMSE / sigma | in 95 % CI"),
-        rows,
-    )
+    Table::of("", "coefficient | bias | RMSE / sigma | in 95 % CI", rows)
 }

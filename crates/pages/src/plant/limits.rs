@@ -1,7 +1,7 @@
 //! What a record of a plant cannot tell.
 
 use gyrocal_answer::Answer;
-use gyrocal_document::{Column, Item, List, Section, Table};
+use gyrocal_document::{Item, List, Section, Table};
 
 use crate::diagnosis::section;
 use crate::unlisted::unlisted;
@@ -22,12 +22,10 @@ pub(super) fn cannot_tell(answer: &Answer) -> Section {
         List::of("Inputs that never move", still),
     ];
     let mut items: Vec<Item> = lists.into_iter().flatten().map(Item::from).collect();
-    if !answer.not_searched.is_empty() {
-        let rows = answer.not_searched.iter();
-        let rows = rows.map(|one| [one.effect.clone(), one.why.clone()]);
-        let columns = Column::heads("effect | reason");
-        items.push(Table::new("Effects that were not tested", columns, rows).into());
-    }
+    let rows = answer.not_searched.iter();
+    let rows = rows.map(|one| [one.effect.clone(), one.why.clone()]);
+    let untested = Table::of("Effects that were not tested", "effect | reason", rows);
+    items.extend(untested.filled().map(Item::from));
     if items.is_empty() {
         let all = match answer.is_settled() {
             true => {

@@ -1,7 +1,7 @@
 //! Outputs over time, and tests of the innovations.
 
 use gyrocal_answer::{Answer, OutputError};
-use gyrocal_document::{Chart, Column, Item, Panel, Section, Table, TimeAxis};
+use gyrocal_document::{Chart, Item, Panel, Section, Table, TimeAxis};
 use gyrocal_plant::{Diagnosed, OutputCorrelation, OutputSeries, RecordSeries};
 use gyrocal_statistics::format::{self, p_cell};
 use gyrocal_statistics::{NORMAL_97_5, rms_of_present};
@@ -215,6 +215,6 @@ fn tests(answer: &Answer) -> Table {
     });
     let title =
         "Noise, and correlation over rows that the model with all findings leaves (Ljung-Box)";
-    let columns = "noise of | > over the declared one | > 95 % interval | > p of white innovations";
-    Table::new(title, Column::heads(columns), rows)
+    let heads = "noise of | > over the declared one | > 95 % interval | > p of white innovations";
+    Table::of(title, heads, rows)
 }

@@ -56,8 +56,8 @@ fn set(answer: &Answer, found: &Finding) -> Table {
         0 => format!("{}: no other effect of what was compared", found.effect),
         count => format!("{} and {count} more in its set", found.effect),
     };
-    let columns = Column::heads("effect | meaning | > size, or nats less likely | place");
-    Table::new(&title, columns, core::iter::once(named).chain(others))
+    let heads = "effect | meaning | > size, or nats less likely | place";
+    Table::of(&title, heads, [named].into_iter().chain(others))
 }
 
 /// Parameters, and initial states of a record that is alone; `None` without a fit.
@@ -75,9 +75,9 @@ pub(super) fn parameters(answer: &Answer) -> Option<Section> {
 }
 
 fn estimates(title: &str, all: &Coefficients) -> Estimates {
-    let mut models = vec![(panels::NOMINAL.to_owned(), Tint::Nominal)];
+    let mut models = vec![(panels::NOMINAL, Tint::Nominal)];
     if all.extended.is_some() {
-        models.push((panels::EXTENDED.to_owned(), Tint::Extended));
+        models.push((panels::EXTENDED, Tint::Extended));
     }
     let pairs = all.nominal.iter().zip(all.best());
     let rows = all.declared.iter().zip(pairs);
@@ -90,10 +90,8 @@ fn estimates(title: &str, all: &Coefficients) -> Estimates {
         }
     });
     Estimates {
-        title: title.to_owned(),
-        rows: rows.collect(),
-        models,
         note_head: "declared".to_owned(),
+        ..Estimates::new(title, &models, rows)
     }
 }
 
@@ -110,8 +108,8 @@ pub(super) fn records(answer: &Answer) -> Option<Section> {
             gyrocal_words::plant::alone(one),
         ]
     });
-    let columns = Column::heads("record | > rows | > duration, s | verdict alone");
-    let mut items = vec![Item::from(Table::new("Each record alone", columns, rows))];
+    let heads = "record | > rows | > duration, s | verdict alone";
+    let mut items = vec![Item::from(Table::of("Each record alone", heads, rows))];
     for one in &answer.records {
         let title = format!(
             "{}: open-loop error with the models of all records",

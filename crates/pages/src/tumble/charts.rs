@@ -5,31 +5,31 @@ use gyrocal_document::{Band, Chart, Line, LineKind, Panel, TimeAxis, Tint};
 use gyrocal_instruments::multi_position::{Finding, GyroReport, MultiPositionReport, PreparedTest};
 use gyrocal_statistics::format;
 
-use crate::panels::line;
+use crate::panels::{band, line};
+
+/// The drift laws, each with its colour.
+pub(super) const LAWS: [(&str, Tint); 2] = [
+    ("nominal law", Tint::Nominal),
+    ("extended law", Tint::Extended),
+];
+
+/// What bands hold.
+const ERRORS: &str = "±2 standard errors of a stop";
+
+/// A point for each stop.
+fn points((label, tint): (&str, Tint), values: &[f64]) -> Line {
+    Line::new(label, tint, LineKind::Points, values.to_vec())
+}
 
 pub(super) fn residuals(prepared: &PreparedTest, report: &MultiPositionReport) -> Chart {
     let found = !report.findings.is_empty();
-    let points = |label: &str, tint, values: &[f64]| Line {
-        label: label.to_owned(),
-        tint,
-        kind: LineKind::Points,
-        values: values.to_vec(),
-    };
+    let [nominal, extended] = LAWS;
     let panels = report.gyros.iter().enumerate().map(|(axis, gyro)| {
-        let sigmas = prepared
-            .positions
-            .sigma_deg_per_h
-            .iter()
-            .map(|sigma| 2.0 * sigma[axis]);
-        let half: Vec<f64> = sigmas.collect();
-        let mut lines = vec![points(
-            "nominal law",
-            Tint::Nominal,
-            &gyro.nominal.residuals_deg_per_h,
-        )];
+        let sigmas = prepared.positions.sigma_deg_per_h.iter();
+        let half: Vec<f64> = sigmas.map(|sigma| 2.0 * sigma[axis]).collect();
+        let mut lines = vec![points(nominal, &gyro.nominal.residuals_deg_per_h)];
         if found {
-            let after = &gyro.extended.residuals_deg_per_h;
-            lines.push(points("extended law", Tint::Extended, after));
+            lines.push(points(extended, &gyro.extended.residuals_deg_per_h));
         }
         Panel {
             name: gyro.gyro.clone(),
@@ -38,12 +38,7 @@ pub(super) fn residuals(prepared: &PreparedTest, report: &MultiPositionReport) -
                 gyro.nominal.chi_square, gyro.extended.chi_square
             ),
             abscissa: (1..=half.len()).map(|stop| stop as f64).collect(),
-            bands: vec![Band {
-                label: "±2 standard errors of a stop".to_owned(),
-                tint: Tint::Expected,
-                lower: half.iter().map(|half| -half).collect(),
-                upper: half,
-            }],
+            bands: vec![band(ERRORS, &half)],
             lines,
             no_gaps: true,
             ..Panel::default()
@@ -100,45 +95,35 @@ pub(super) fn contributions(prepared: &PreparedTest, report: &MultiPositionRepor
 }
 
 fn contribution(prepared: &PreparedTest, gyro: &GyroReport, finding: &Finding) -> Panel {
-    let sigmas = prepared
-        .positions
-        .sigma_deg_per_h
-        .iter()
-        .map(|sigma| sigma[finding.gyro]);
-    let rows = finding
-        .regressor
-        .iter()
-        .zip(&gyro.extended.residuals_deg_per_h)
-        .zip(sigmas);
-    let mut rows: Vec<[f64; 3]> = rows
-        .map(|((at, residual), sigma)| [*at, residual + finding.estimate * at, sigma])
-        .collect();
+    let residuals = &gyro.extended.residuals_deg_per_h;
+    let rows = finding.regressor.iter().zip(residuals);
+    let rows = rows.zip(&prepared.positions.sigma_deg_per_h);
+    let rows = rows.map(|((at, residual), sigma)| {
+        let rate = residual + finding.estimate * at;
+        [*at, rate, sigma[finding.gyro]]
+    });
+    let mut rows: Vec<[f64; 3]> = rows.collect();
     rows.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let fitted = |sigmas: f64| -> Vec<f64> {
         let rows = rows.iter();
         rows.map(|row| finding.estimate * row[0] + sigmas * row[2])
             .collect()
     };
+    let rates: Vec<f64> = rows.iter().map(|row| row[1]).collect();
     let [estimate, sigma] = format::estimate(finding.estimate, finding.sigma);
     Panel {
         name: finding.effect.clone(),
         note: format!("{estimate} ± {sigma} {}", finding.unit).replace('-', "−"),
         own_abscissa: Some(regressor(finding)),
         abscissa: rows.iter().map(|row| row[0]).collect(),
-        bands: vec![Band {
-            label: "±2 standard errors of a stop".to_owned(),
-            tint: Tint::Extended,
-            lower: fitted(-2.0),
-            upper: fitted(2.0),
-        }],
+        bands: vec![Band::new(
+            ERRORS,
+            Tint::Extended,
+            [fitted(-2.0), fitted(2.0)],
+        )],
         lines: vec![
             line("fitted term", Tint::Extended, fitted(0.0)),
-            Line {
-                label: "one static stop".to_owned(),
-                tint: Tint::Measured,
-                kind: LineKind::Points,
-                values: rows.iter().map(|row| row[1]).collect(),
-            },
+            points(("one static stop", Tint::Measured), &rates),
         ],
         no_gaps: true,
         ..Panel::default()

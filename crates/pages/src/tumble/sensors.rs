@@ -1,6 +1,6 @@
 //! Stops and sensors of a multi-position test.
 
-use gyrocal_document::{Column, Item, Section, Table};
+use gyrocal_document::{Item, Section, Table};
 use gyrocal_instruments::AccelErrors;
 use gyrocal_statistics::format;
 
@@ -47,8 +47,8 @@ pub(super) fn section_of(answer: &TumbleAnswer<'_>) -> Section {
             list(stop.rate_deg_per_h, 1),
         ]
     });
-    let columns = "> from, s | > to, s | > force x, y, z, g | > rate x, y, z, deg/h";
-    items.push(Table::new("Stops", Column::heads(columns), rows).into());
+    let heads = "> from, s | > to, s | > force x, y, z, g | > rate x, y, z, deg/h";
+    items.push(Table::of("Stops", heads, rows).into());
     section(
         "stops",
         "Stops and sensors",
@@ -64,8 +64,8 @@ fn accelerometers(items: &mut Vec<Item>, errors: &AccelErrors) {
         let estimate = format::estimate(one.estimate, one.sigma).join(" ± ");
         [one.name.clone(), estimate, one.unit.to_owned()]
     });
-    let columns = Column::heads("coefficient | > estimate ± σ | unit");
-    items.push(Table::new("Accelerometers, from the magnitude", columns, rows).into());
+    let heads = "coefficient | > estimate ± σ | unit";
+    items.push(Table::of("Accelerometers, from the magnitude", heads, rows).into());
     if !open.is_empty() {
         let open: Vec<&str> = open.iter().map(|one| &*one.name).collect();
         items.push(Item::text(format!(

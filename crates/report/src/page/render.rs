@@ -10,7 +10,7 @@ use super::decimate::{MOST_ROWS, Row, rows};
 use super::strips;
 use super::templates::{environment, make_printable, of_words, template};
 use crate::error::Error;
-use crate::number::{count, readable_unit};
+use crate::number::{count, readable_unit, with_unit};
 use gyrocal_document::{Chart, Item, Page, Panel, Part, Section, Standing};
 
 const STYLES: [&str; 2] = [
@@ -134,7 +134,7 @@ impl Drawing {
         let drawn_panels = panels().map(|(panel, half)| {
             let (factor, unit) = scaled(panel);
             let mut drawn = self.panel(panel, factor, &unit);
-            drawn["abscissaTitle"] = axis(chart.abscissa_of(panel)).into();
+            drawn["abscissaTitle"] = abscissa_title(chart, panel).into();
             drawn["half"] = half.map(|half| factor * half).into();
             drawn
         });
@@ -218,6 +218,11 @@ impl Drawing {
     }
 }
 
+fn abscissa_title(chart: &Chart, panel: &Panel) -> String {
+    let (quantity, unit) = chart.abscissa_of(panel);
+    with_unit(quantity, unit)
+}
+
 /// Name, note and the text for those who do not see the picture.
 fn description(chart: &Chart, panel: &Panel, half: Option<f64>) -> Value {
     let note = chart::note(chart, panel, half);
@@ -229,7 +234,7 @@ fn description(chart: &Chart, panel: &Panel, half: Option<f64>) -> Value {
             "{}: {} against {}. {}. {note}",
             panel.name,
             shown.join(", "),
-            axis(chart.abscissa_of(panel)),
+            abscissa_title(chart, panel),
             chart.title,
         ),
         "note": note,
@@ -258,14 +263,6 @@ fn legend(chart: &Chart) -> Vec<Value> {
     entries
 }
 
-/// A quantity with its unit.
-fn axis((quantity, unit): (&str, &str)) -> String {
-    match unit {
-        "" => quantity.to_owned(),
-        unit => format!("{quantity} [{unit}]"),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::templates::words_to_html;
@@ -289,12 +286,12 @@ mod tests {
             panels: vec![Panel {
                 name: own(),
                 abscissa: vec![0.0, 1.0],
-                lines: vec![Line {
-                    label: own(),
-                    tint: Tint::Measured,
-                    kind: LineKind::Solid,
-                    values: vec![0.0, 1.0],
-                }],
+                lines: vec![Line::new(
+                    HOSTILE,
+                    Tint::Measured,
+                    LineKind::Solid,
+                    vec![0.0, 1.0],
+                )],
                 ..Panel::default()
             }],
             ..Chart::default()
@@ -325,20 +322,17 @@ mod tests {
     #[test]
     fn no_text_becomes_markup_or_is_hidden() {
         let own = || HOSTILE.to_owned();
+        let bar = Bar {
+            label: own(),
+            value: 1.0,
+            tint: Tint::Other,
+            note: own(),
+        };
+        let groups = vec![BarGroup::new(HOSTILE, [bar])];
         let bars = Bars {
-            title: own(),
-            quantity: own(),
             threshold: Some((1.0, own())),
-            groups: vec![BarGroup {
-                label: own(),
-                bars: vec![Bar {
-                    label: own(),
-                    value: 1.0,
-                    tint: Tint::Other,
-                    note: own(),
-                }],
-            }],
             omitted: own(),
+            ..Bars::new(HOSTILE, HOSTILE, groups)
         };
         let items = vec![
             Item::text(own()),
