@@ -22,8 +22,19 @@ impl Axis {
     /// a power of 1000 of the unit.
     pub(crate) fn linear(span: Span, quantity: &str, unit: &str, ticks: usize) -> Self {
         let (factor, unit) = readable_unit(unit, span.largest());
-        let title = with_unit(quantity, &unit);
-        Self::scaled(span, factor, title, ticks)
+        let (lo, hi) = (span.lo * factor, span.hi * factor);
+        let step = step((hi - lo) / ticks.max(1) as f64);
+        let decimals = decimals(step);
+        let (first, last) = ((lo / step).ceil() as i64, (hi / step).floor() as i64);
+        let tick = |multiple: i64| {
+            let value = multiple as f64 * step;
+            (value / factor, label(value, decimals))
+        };
+        Self {
+            ticks: (first..=last).map(tick).collect(),
+            title: with_unit(quantity, &unit),
+            ..Self::bare(span)
+        }
     }
 
     /// A logarithmic scale; the span must be positive.
@@ -58,12 +69,11 @@ impl Axis {
                 .collect();
         }
         Self {
-            lo: span.lo,
-            hi: span.hi,
             logarithmic: true,
             ticks: labelled,
             minor,
             title: with_unit(quantity, unit),
+            ..Self::bare(span)
         }
     }
 
@@ -90,27 +100,6 @@ impl Axis {
             }
         } else {
             (value - self.lo) / (self.hi - self.lo)
-        }
-    }
-
-    fn scaled(span: Span, factor: f64, title: String, ticks: usize) -> Self {
-        let (lo, hi) = (span.lo * factor, span.hi * factor);
-        let step = step((hi - lo) / ticks.max(1) as f64);
-        let decimals = decimals(step);
-        let (first, last) = ((lo / step).ceil() as i64, (hi / step).floor() as i64);
-        let ticks = (first..=last)
-            .map(|multiple| {
-                let value = multiple as f64 * step;
-                (value / factor, label(value, decimals))
-            })
-            .collect();
-        Self {
-            lo: span.lo,
-            hi: span.hi,
-            logarithmic: false,
-            ticks,
-            minor: Vec::new(),
-            title,
         }
     }
 }
@@ -162,15 +151,7 @@ mod tests {
 
     #[test]
     fn ticks_are_round() {
-        let axis = Axis::linear(
-            Span {
-                lo: -0.31,
-                hi: 0.42,
-            },
-            "drift",
-            "deg/h",
-            4,
-        );
+        let axis = Axis::linear(Span::new(-0.31, 0.42), "drift", "deg/h", 4);
         assert_eq!(labels(&axis), ["−0.2", "0", "0.2", "0.4"]);
         let micro = Axis::linear(Span::symmetric(3.1e-5), "residual", "g", 4);
         assert_eq!(labels(&micro), ["−20", "0", "20"]);
@@ -179,38 +160,18 @@ mod tests {
 
     #[test]
     fn powers_of_ten_or_their_multiples() {
-        let wide = Axis::logarithmic(
-            Span {
-                lo: 1e-4,
-                hi: 300.0,
-            },
-            "power",
-            "g²",
-            4,
-        );
+        let wide = Axis::logarithmic(Span::new(1e-4, 300.0), "power", "g²", 4);
         assert_eq!(labels(&wide), ["10⁻⁴", "10⁻²", "1", "10²"]);
-        let plain = Axis::logarithmic(
-            Span {
-                lo: 0.07,
-                hi: 720.0,
-            },
-            "f",
-            "",
-            8,
-        );
+        let plain = Axis::logarithmic(Span::new(0.07, 720.0), "f", "", 8);
         assert_eq!(labels(&plain), ["0.1", "1", "10", "100"]);
-        let narrow = Axis::logarithmic(Span { lo: 1.5, hi: 60.0 }, "power", "g²", 4);
+        let narrow = Axis::logarithmic(Span::new(1.5, 60.0), "power", "g²", 4);
         assert_eq!(labels(&narrow), ["2", "5", "10", "20", "50"]);
     }
 
     #[test]
     fn a_single_value_has_a_scale() {
         for value in [0.0, 3.0, -1e-9] {
-            let span = Span {
-                lo: value,
-                hi: value,
-            }
-            .padded(0.05);
+            let span = Span::new(value, value).padded(0.05);
             assert!(span.lo < value && value < span.hi, "{span:?}");
             assert!(Axis::linear(span, "", "", 4).ticks.len() >= 2);
         }

@@ -76,10 +76,7 @@ fn legend(estimates: &Estimates) -> Vec<Legend> {
 }
 
 fn draw(estimates: &Estimates, canvas: &mut Canvas, layout: Layout, body: Rect, names_px: f64) {
-    let heights = Span {
-        lo: -0.8,
-        hi: estimates.models.len() as f64 - 0.2,
-    };
+    let heights = Span::new(-0.8, estimates.models.len() as f64 - 0.2);
     for (index, row) in estimates.rows.iter().enumerate() {
         let frame = layout.frame(body, index);
         let span = Span::of(row.values.iter().flat_map(ends));

@@ -216,15 +216,11 @@ mod tests {
             .collect()
     }
 
-    fn span(lo: f64, hi: f64) -> Span {
-        Span { lo, hi }
-    }
-
     #[test]
     fn gaps_are_not_bridged() {
         let time = [0.0, 1.0, 2.0, 3.0, 10.0, 11.0, 12.0, 13.0];
         let values = [0.5, 0.5, f64::NAN, 0.5, 0.5, 0.5, 0.5, 0.5];
-        let points = points(span(0.0, 20.0), span(0.0, 1.0), &time, &values);
+        let points = points(Span::new(0.0, 20.0), Span::new(0.0, 1.0), &time, &values);
         let lines = lines(FRAME, &time, &points, longest_interval(&time));
         let ends: Vec<_> = lines
             .iter()
@@ -241,13 +237,13 @@ mod tests {
         let mut values: Vec<f64> = time.iter().map(|t| (0.1 * t).sin()).collect();
         values[31_415] = 7.0;
         values[27_182] = -5.0;
-        let (x, y) = (span(0.0, f64::from(count)), span(-10.0, 10.0));
+        let (x, y) = (Span::new(0.0, f64::from(count)), Span::new(-10.0, 10.0));
         let lines = lines(FRAME, &time, &points(x, y, &time, &values), 10.0);
         assert_eq!(lines.len(), 1);
         assert!(lines[0].len() <= 4 * 101, "{}", lines[0].len());
         let drawn = Span::of(lines[0].iter().map(|point| point.1));
         // 50 px for 20 units, downwards.
-        let expected = span(45.0 - 7.0 * 2.5, 45.0 + 5.0 * 2.5);
+        let expected = Span::new(45.0 - 7.0 * 2.5, 45.0 + 5.0 * 2.5);
         assert_eq!(drawn, Some(expected));
         assert!(lines[0].windows(2).all(|pair| pair[0].0 <= pair[1].0));
     }
@@ -255,7 +251,7 @@ mod tests {
     #[test]
     fn a_level_band_has_four_corners() {
         let time: Vec<f64> = (0..100).map(f64::from).collect();
-        let (x, y) = (span(0.0, 99.0), span(0.0, 1.0));
+        let (x, y) = (Span::new(0.0, 99.0), Span::new(0.0, 1.0));
         let edge = |value: f64| points(x, y, &time, &[value; 100]);
         let bands = bands(FRAME, &time, (&edge(0.2), &edge(0.8)), 9.0);
         assert_eq!(
@@ -268,7 +264,7 @@ mod tests {
     fn lines_end_at_the_edge() {
         let time = [0.0, 1.0, 2.0, 3.0, 4.0];
         let values = [0.5, 1.5, 0.5, -9.5, -9.5];
-        let points = points(span(0.0, 4.0), span(0.0, 1.0), &time, &values);
+        let points = points(Span::new(0.0, 4.0), Span::new(0.0, 1.0), &time, &values);
         let lines = lines(FRAME, &time, &points, 9.0);
         assert_eq!(lines.len(), 2);
         assert_eq!(lines[0], [(10.0, 45.0), (22.5, 20.0)]);

@@ -8,50 +8,33 @@ pub(crate) struct Span {
 }
 
 impl Span {
+    pub(crate) fn new(lo: f64, hi: f64) -> Self {
+        Self { lo, hi }
+    }
+
     /// The span of all finite values; `None` if there are none.
     pub(crate) fn of(values: impl IntoIterator<Item = f64>) -> Option<Self> {
-        values.into_iter().filter(|value| value.is_finite()).fold(
-            None,
-            |span: Option<Self>, value| {
-                Some(span.map_or(
-                    Self {
-                        lo: value,
-                        hi: value,
-                    },
-                    |span| Self {
-                        lo: span.lo.min(value),
-                        hi: span.hi.max(value),
-                    },
-                ))
-            },
-        )
+        let finite = values.into_iter().filter(|value| value.is_finite());
+        finite
+            .map(|value| Self::new(value, value))
+            .reduce(Self::with)
     }
 
     /// From minus to plus the size.
     pub(crate) fn symmetric(size: f64) -> Self {
-        Self {
-            lo: -size,
-            hi: size,
-        }
-        .open()
+        Self::new(-size, size).open()
     }
 
     /// Both together.
     pub(crate) fn with(self, other: Self) -> Self {
-        Self {
-            lo: self.lo.min(other.lo),
-            hi: self.hi.max(other.hi),
-        }
+        Self::new(self.lo.min(other.lo), self.hi.max(other.hi))
     }
 
     /// A little more on either side, a fraction of the length.
     pub(crate) fn padded(self, fraction: f64) -> Self {
         let span = self.open();
         let more = fraction * span.length();
-        Self {
-            lo: span.lo - more,
-            hi: span.hi + more,
-        }
+        Self::new(span.lo - more, span.hi + more)
     }
 
     /// A span that is not a single point, so that there is a scale.
@@ -62,10 +45,7 @@ impl Span {
             return self;
         }
         let more = if size > 0.0 { 0.1 * size } else { 1.0 };
-        Self {
-            lo: self.lo - more,
-            hi: self.hi + more,
-        }
+        Self::new(self.lo - more, self.hi + more)
     }
 
     pub(crate) fn length(self) -> f64 {

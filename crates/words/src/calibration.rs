@@ -5,14 +5,15 @@ mod tables;
 
 use gyrocal_document::{List, Words};
 use gyrocal_record::{
-    AXES, AzimuthReport, CalibrationMethod, CalibrationReport, NoiseDifference, NoiseEstimate,
-    NoiseRatio, RecordReport, RunReport, SiteReport, printable_line,
+    AXES, AzimuthReport, CalibrationMethod, CalibrationReport, Coefficient, NoiseDifference,
+    NoiseEstimate, NoiseRatio, RecordReport, RunReport, SiteReport, printable_line,
 };
 use gyrocal_statistics::format;
 
 pub use screen::calibration_screen;
 
 use crate::diagnosis::is_correlation;
+use crate::files::joined;
 
 /// Share of the variance of a mean from which on the attitude random walk within it is told; a smaller one does not
 /// change the consistency test of a record of some days.
@@ -78,45 +79,32 @@ fn record_line(one: &RecordReport) -> String {
 }
 
 fn determined(report: &CalibrationReport) -> String {
-    let ids = |determined: bool| -> Vec<&str> {
-        let those = report.coefficients.iter();
-        let those = those.filter(|one| one.determined == determined);
-        those.map(|one| &*one.name).collect()
+    let ids = |determined: bool| {
+        let all = report.coefficients.iter();
+        let those = all.filter(|one| one.determined == determined);
+        joined(those.map(|one| &one.name), ", ")
     };
     let [records, determine] = match has_several(report) {
         true => ["records", "determine"],
         false => ["record", "determines"],
     };
-    match (&ids(true)[..], &ids(false)[..]) {
-        (_, []) => format!("The {records} {determine} all nine coefficients."),
-        ([], _) => format!(
+    match (&*ids(true), &*ids(false)) {
+        (_, "") => format!("The {records} {determine} all nine coefficients."),
+        ("", _) => format!(
             "The {records} {determine} none of the coefficients: estimates and sigmas below are mostly those of \
              the prior."
         ),
-        (yes, no) => format!(
-            "The {records} {determine} {}. Not determined: {}.",
-            yes.join(", "),
-            no.join(", ")
-        ),
+        (yes, no) => format!("The {records} {determine} {yes}. Not determined: {no}."),
     }
 }
 
 fn undetermined(report: &CalibrationReport) -> Option<Words> {
-    let entries = report.undetermined.iter();
-    let entries = entries.map(|one| {
-        let share = format::percent(one.share_of_prior);
-        format!(
-            "{}: its sigma is {share} of that before the record",
-            one.text
-        )
+    let entries = report.undetermined.iter().map(|one| {
+        let (text, share) = (&one.text, format::percent(one.share_of_prior));
+        format!("{text}: its sigma is {share} of that before the record")
     });
-    let entries: Vec<String> = entries.collect();
-    (!entries.is_empty()).then(|| {
-        Words::List(List {
-            title: "Unobservable combinations, each coefficient over its prior sigma".to_owned(),
-            entries,
-        })
-    })
+    let title = "Unobservable combinations, each coefficient over its prior sigma";
+    List::of(title, entries).map(Words::List)
 }
 
 /// Attitude and noise of a record.
@@ -188,7 +176,7 @@ fn ratios(noise: &NoiseEstimate, is_correlated: bool) -> String {
                 false => format!("{axis} not observable"),
             }
         });
-        each.collect::<Vec<_>>().join(", ")
+        joined(each, ", ")
     };
     let accelerometers = format!("accelerometers {}", each(&noise.accel));
     match is_correlated {
@@ -200,25 +188,22 @@ fn ratios(noise: &NoiseEstimate, is_correlated: bool) -> String {
 /// Names the noises whose interval excludes the declared one.
 fn noise_differences(noise: &NoiseEstimate) -> String {
     let named = |kind: &'static str, found: [NoiseRatio; 3]| {
-        AXES.into_iter()
-            .zip(found)
-            .filter_map(move |(axis, ratio)| {
-                let difference = match ratio.difference()? {
-                    NoiseDifference::Larger => "larger",
-                    NoiseDifference::Smaller => "smaller",
-                };
-                Some(format!("{kind}_{axis} ({difference})"))
-            })
+        let each = AXES.into_iter().zip(found);
+        each.filter_map(move |(axis, ratio)| {
+            let difference = match ratio.difference()? {
+                NoiseDifference::Larger => "larger",
+                NoiseDifference::Smaller => "smaller",
+            };
+            Some(format!("{kind}_{axis} ({difference})"))
+        })
     };
     let different = named("accel", noise.accel).chain(named("gyro", noise.gyro));
-    let different: Vec<String> = different.collect();
-    if different.is_empty() {
-        return "All noise levels agree with the declared ones.".to_owned();
+    match &*joined(different, ", ") {
+        "" => "All noise levels agree with the declared ones.".to_owned(),
+        named => format!(
+            "Noise levels other than declared: {named}. By chance one of six intervals excludes 1 in every fourth record."
+        ),
     }
-    format!(
-        "Noise levels other than declared: {}. By chance one of six intervals excludes 1 in every fourth record.",
-        different.join(", ")
-    )
 }
 
 /// The sensitivity to the latitude.
@@ -253,10 +238,8 @@ fn site(report: &CalibrationReport) -> String {
                 Some(declared) if sigma < declared => ", better than declared",
                 _ => "",
             };
-            format!(
-                "{records} {verb} latitude to {:.1} arcsec (1 sigma){better}.",
-                3600.0 * sigma
-            )
+            let arcsec = 3600.0 * sigma;
+            format!("{records} {verb} latitude to {arcsec:.1} arcsec (1 sigma){better}.")
         }
     };
     format!("{assumed} {alone}")
@@ -268,18 +251,11 @@ fn exact_latitude(report: &CalibrationReport, latitude: &SiteReport) -> String {
         .iter()
         .filter_map(|place| biases.get(*place));
     let mean = of_g.map(|[bias, _]| bias).sum::<f64>() / 3.0;
-    let told = tables::largest_bias(report, latitude).map_or_else(
-        String::new,
-        |(one, [bias, in_sigmas])| {
-            format!(
-                " and {} by {:.1e} {} ({:.2} sigma)",
-                one.name,
-                bias.abs(),
-                one.unit,
-                in_sigmas.abs()
-            )
-        },
-    );
+    let told = tables::largest_bias(report, latitude);
+    let told = told.map_or_else(String::new, |(one, both)| {
+        let ([bias, in_sigmas], Coefficient { name, unit, .. }) = (both.map(f64::abs), one);
+        format!(" and {name} by {bias:.1e} {unit} ({in_sigmas:.2} sigma)")
+    });
     format!(
         "Latitude is taken as exact, because the bench file gives no latitude_sigma_deg, and must be the \
          astronomic one: an error of 1 arcsec shifts the mean of the three D_I by {:.1e} deg/h/g{told}, which no \
@@ -292,11 +268,8 @@ fn overlaps(report: &CalibrationReport) -> Vec<String> {
     let pairs = report.records.iter();
     let pairs = pairs.flat_map(|one| one.overlaps.iter().map(|earlier| (&one.record, earlier)));
     let told = pairs.map(|(one, earlier)| {
-        format!(
-            "The times of {} and {} overlap: they are treated as turn-ons with separate clocks.",
-            printable_line(earlier),
-            printable_line(one)
-        )
+        let [earlier, one] = [earlier, one].map(|name| printable_line(name));
+        format!("The times of {earlier} and {one} overlap: they are treated as turn-ons with separate clocks.")
     });
     told.collect()
 }

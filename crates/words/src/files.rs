@@ -54,11 +54,23 @@ pub fn input_files(inputs: &[Input]) -> Option<String> {
     has_record.then(|| command_files(known))
 }
 
+/// Names in a row, with this between any two.
+#[must_use]
+pub fn joined(names: impl IntoIterator<Item = impl AsRef<str>>, between: &str) -> String {
+    let mut row = String::new();
+    for (place, name) in names.into_iter().enumerate() {
+        row += if place == 0 { "" } else { between };
+        row += name.as_ref();
+    }
+    row
+}
+
 /// The first few of several names, and how many more there are.
 #[must_use]
-pub fn few(names: &[&str], shown: usize) -> String {
-    let first = names[..names.len().min(shown)].join(", ");
-    match names.len().saturating_sub(shown) {
+pub fn few(names: impl IntoIterator<Item = impl AsRef<str>>, shown: usize) -> String {
+    let mut names = names.into_iter();
+    let first = joined(names.by_ref().take(shown), ", ");
+    match names.count() {
         0 => first,
         more => format!("{first} and {more} more"),
     }

@@ -1,9 +1,6 @@
 //! The rows of a panel that are drawn: gaps, and extremes of long columns.
 
-use gyrocal_statistics::median_interval_s;
-
-/// Intervals longer than this multiple of the usual one are gaps.
-const GAP_FACTOR: f64 = 4.0;
+use crate::polyline::longest_interval;
 
 /// A panel of no more rows keeps all.
 pub(super) const MOST_ROWS: usize = 6000;
@@ -36,7 +33,7 @@ pub(super) fn rows<'a>(
     let longest = if no_gaps {
         f64::INFINITY
     } else {
-        GAP_FACTOR * median_interval_s(abscissa)
+        longest_interval(abscissa)
     };
     let mut rows = Vec::with_capacity(kept.len());
     for (place, &row) in kept.iter().enumerate() {

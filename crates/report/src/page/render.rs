@@ -175,30 +175,24 @@ impl Drawing {
             }))
         };
         let abscissa = column(&panel.abscissa, 1.0, false);
-        let bands: Vec<Value> = panel
-            .bands
-            .iter()
-            .map(|band| {
-                json!({
-                    "label": band.label,
-                    "tint": band.tint,
-                    "lower": column(&band.lower, factor, true),
-                    "upper": column(&band.upper, factor, true),
-                })
-            })
-            .collect();
-        let lines: Vec<Value> = panel
-            .lines
-            .iter()
-            .map(|line| {
-                json!({
-                    "label": line.label,
-                    "tint": line.tint,
-                    "kind": line.kind,
-                    "values": column(&line.values, factor, true),
-                })
-            })
-            .collect();
+        let mut bands = Vec::new();
+        for band in &panel.bands {
+            bands.push(json!({
+                "label": band.label,
+                "tint": band.tint,
+                "lower": column(&band.lower, factor, true),
+                "upper": column(&band.upper, factor, true),
+            }));
+        }
+        let mut lines = Vec::new();
+        for line in &panel.lines {
+            lines.push(json!({
+                "label": line.label,
+                "tint": line.tint,
+                "kind": line.kind,
+                "values": column(&line.values, factor, true),
+            }));
+        }
         let levels = panel.levels.iter();
         let marks = panel.marks.iter();
         json!({

@@ -1,5 +1,9 @@
 //! The first screen of a calibration.
 
+use super::{has_several, is_correlated, latitude, record_line, tables};
+use crate::diagnosis::parameter_values;
+use crate::files::{few, input_files, joined, record_and_bench};
+use crate::format::{tested, with_sigma};
 use gyrocal::EFFECTS;
 use gyrocal_answer::Parameter;
 use gyrocal_document::{Column, Screen, Standing, Table};
@@ -7,12 +11,6 @@ use gyrocal_record::{
     CalibrationReport, EffectTest, FitVerdict, FittedEffects, InputRole, NamedCause, NoiseEstimate,
     NoiseRatio,
 };
-use gyrocal_statistics::format;
-
-use super::{has_several, is_correlated, latitude, record_line, tables};
-use crate::diagnosis::parameter_values;
-use crate::files::{few, input_files, record_and_bench};
-use crate::format::tested;
 
 /// Records that are told one by one.
 const RECORDS_SHOWN: usize = 2;
@@ -63,13 +61,10 @@ pub fn calibration_screen(report: &CalibrationReport) -> Screen {
 fn next(report: &CalibrationReport, screen: &mut Screen) {
     let inputs = &report.manifest.inputs;
     if let Some(effects) = report.with_effects.as_ref().and_then(terms) {
-        let is_strapdown = inputs
-            .iter()
-            .any(|one| one.role == Some(InputRole::GyroAxes));
-        let gyros = if is_strapdown {
-            " --gyros strapdown"
-        } else {
-            ""
+        let mut roles = inputs.iter().map(|one| one.role);
+        let gyros = match roles.any(|role| role == Some(InputRole::GyroAxes)) {
+            true => " --gyros strapdown",
+            false => "",
         };
         let command = format!("gyrocal extend --effects {effects}{gyros} --out NAME.model.toml");
         return screen.then(command, "the filter");
@@ -157,12 +152,10 @@ fn causes(test: &EffectTest, alternatives: bool, screen: &mut Screen) {
         let p = tested(one.p_value);
         format!("{}, {:.1} sigma, search-corrected {p}", one.effect, one.z)
     });
-    let each: Vec<String> = each.collect();
-    screen.fact("how large", each.join("; "));
-    let others = test.causes.iter().flat_map(|one| &one.alternatives);
-    let others: Vec<&str> = others.map(String::as_str).collect();
+    screen.fact("how large", joined(each, "; "));
     if alternatives {
-        screen.fact("may also be", few(&others, NAMES_SHOWN));
+        let others = test.causes.iter().flat_map(|one| &one.alternatives);
+        screen.fact("may also be", few(others, NAMES_SHOWN));
     }
 }
 
@@ -202,8 +195,7 @@ fn fitted(with: &FittedEffects) -> String {
         let parameters: Vec<Parameter> = parameters.collect();
         format!("{}: {}", one.effect, parameter_values(&parameters))
     });
-    let effects: Vec<String> = effects.collect();
-    format!("{}; {:+.1} nats", effects.join("; "), with.gained_nats)
+    format!("{}; {:+.1} nats", joined(effects, "; "), with.gained_nats)
 }
 
 /// What the noise audits of the records found.
@@ -217,18 +209,16 @@ fn noise_found(report: &CalibrationReport) -> Vec<&str> {
 
 fn results(report: &CalibrationReport, screen: &mut Screen) {
     let open = report.coefficients.iter().filter(|one| !one.determined);
-    let open: Vec<&str> = open.map(|one| &*one.name).collect();
-    screen.fact("not determined", few(&open, NAMES_SHOWN));
+    let open = few(open.map(|one| &one.name), NAMES_SHOWN);
+    screen.fact("not determined", open);
     for run in report.runs.iter().take(RECORDS_SHOWN) {
         // Of several records the details have it.
         if let Some(found) = run.noise.as_ref().filter(|_| !has_several(report)) {
             screen.fact("noise", noise(found, is_correlated(report, &run.record)));
         }
         if run.azimuth.as_ref().is_some_and(|search| search.ambiguous) {
-            screen.fact(
-                "azimuth",
-                "ambiguous: give initial_angles_deg, or record for longer",
-            );
+            let words = "ambiguous: give initial_angles_deg, or record for longer";
+            screen.fact("azimuth", words);
         }
     }
     screen.fact("latitude", latitude_taken(report));
@@ -244,13 +234,12 @@ fn noise(found: &NoiseEstimate, is_correlated: bool) -> String {
         });
         each.join(", ")
     };
-    let accelerometers = list(&found.accel);
+    let (accelerometers, gyros) = (list(&found.accel), list(&found.gyro));
     match is_correlated {
         true => format!("of the declared one: accelerometers {accelerometers} times, correlated"),
-        false => format!(
-            "of the declared one: accelerometers {accelerometers}, gyros {} times",
-            list(&found.gyro)
-        ),
+        false => {
+            format!("of the declared one: accelerometers {accelerometers}, gyros {gyros} times")
+        }
     }
 }
 
@@ -263,11 +252,8 @@ fn latitude_taken(report: &CalibrationReport) -> String {
         return "its declared sigma is in the sigmas".to_owned();
     }
     tables::largest_bias(report, latitude).map_or_else(String::new, |(one, [_, in_sigmas])| {
-        format!(
-            "taken as exact: 1 arcsec would shift {} by {:.2} sigma",
-            one.name,
-            in_sigmas.abs()
-        )
+        let (name, sigmas) = (&one.name, in_sigmas.abs());
+        format!("taken as exact: 1 arcsec would shift {name} by {sigmas:.2} sigma")
     })
 }
 
@@ -276,23 +262,18 @@ fn table(report: &CalibrationReport) -> Table {
     let mut columns = vec![Column::words("coefficient"), Column::words("estimate")];
     columns.extend(with.map(|_| Column::words("with the effects")));
     columns.push(Column::words(""));
-    let value = |estimate: f64, sigma: f64| format::estimate(estimate, sigma).join(" ± ");
     let rows = report.coefficients.iter().enumerate().map(|(place, one)| {
-        let mut row = vec![
-            one.name.clone(),
-            format!("{} {}", value(one.estimate, one.sigma), one.unit),
-        ];
+        let estimate = with_sigma(one.estimate, one.sigma);
+        let mut row = vec![one.name.clone(), format!("{estimate} {}", one.unit)];
         let with = with.and_then(|with| with.coefficients.get(place));
-        row.extend(with.map(|with| value(with.estimate, with.sigma)));
-        let meaning = tables::meaning(&one.name)
-            .split(':')
-            .next()
-            .unwrap_or_default();
-        row.push(match (one.determined, with) {
-            (false, _) => "not determined".to_owned(),
-            (true, None) => meaning.to_owned(),
-            (true, Some(_)) => String::new(),
-        });
+        row.extend(with.map(|with| with_sigma(with.estimate, with.sigma)));
+        let meaning = tables::meaning(&one.name);
+        let remark = match (one.determined, with) {
+            (false, _) => "not determined",
+            (true, None) => meaning.split(':').next().unwrap_or_default(),
+            (true, Some(_)) => "",
+        };
+        row.push(remark.to_owned());
         row
     });
     Table::new("", columns, rows)

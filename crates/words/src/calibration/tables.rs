@@ -7,6 +7,8 @@ use gyrocal_record::{AXES, CalibrationReport, Coefficient, SiteReport, printable
 use gyrocal_statistics::format;
 
 use super::has_several;
+use crate::files::joined;
+use crate::format::with_sigma;
 
 /// Quantities of the site, in the order in which they are told.
 const QUANTITIES: [&str; 3] = ["latitude", "earth_rate", "gravity"];
@@ -21,10 +23,6 @@ pub(super) fn further(report: &CalibrationReport) -> Vec<Table> {
         site(report),
     ];
     tables.into_iter().flatten().collect()
-}
-
-fn value(estimate: f64, sigma: f64) -> String {
-    format::estimate(estimate, sigma).join(" ± ")
 }
 
 /// What a coefficient is.
@@ -49,29 +47,22 @@ fn given_effects(report: &CalibrationReport) -> Option<Table> {
     );
     let effects = with.effects.iter().flat_map(|effect| {
         effect.parameters.iter().map(|own| {
-            let pieces = own.interval.iter().flatten();
-            let pieces =
-                pieces.map(|ends| ends.map(|end| format::significant(end, 4)).join(" to "));
+            let ends = |ends: &[f64; 2]| ends.map(|end| format::significant(end, 4)).join(" to ");
+            let pieces = own.interval.iter().flatten().map(ends);
             [
                 effect.effect.clone(),
                 own.name.clone(),
                 match own.sigma {
-                    Some(sigma) => value(own.estimate, sigma),
+                    Some(sigma) => with_sigma(own.estimate, sigma),
                     None => format::significant(own.estimate, 4),
                 },
-                pieces.collect::<Vec<_>>().join(" or "),
+                joined(pieces, " or "),
                 own.unit.clone(),
             ]
         })
     });
-    let columns = vec![
-        Column::words("effect"),
-        Column::words("parameter"),
-        Column::numbers("estimate"),
-        Column::numbers("95 % interval"),
-        Column::words("unit"),
-    ];
-    Some(Table::new(&title, columns, effects))
+    let heads = "effect | parameter | > estimate | > 95 % interval | unit";
+    Some(Table::of(&title, heads, effects))
 }
 
 /// Attitude of each record at its first and last row; `None` for the streaming filter.
@@ -84,13 +75,9 @@ fn attitudes(report: &CalibrationReport) -> Option<Table> {
             angles(run.final_angles_deg),
         ]
     });
-    let columns = vec![
-        Column::words("record"),
-        Column::numbers("first row, deg"),
-        Column::numbers("last row, deg"),
-    ];
+    let heads = "record | > first row, deg | > last row, deg";
     let title = "Platform angles about x, y, z against east, north, up";
-    (!report.runs.is_empty()).then(|| Table::new(title, columns, rows))
+    Table::of(title, heads, rows).filled()
 }
 
 /// Offsets of the turn-ons from the mean constant drifts; `None` if turn-ons are declared alike.
@@ -98,14 +85,13 @@ fn turn_ons(report: &CalibrationReport) -> Option<Table> {
     let rows = report.runs.iter().filter_map(|run| {
         let gyros = run.turn_on.as_ref()?;
         let name = printable_line(&run.record).into_owned();
-        let gyros = gyros.iter().map(|one| value(one.estimate, one.sigma));
-        Some(core::iter::once(name).chain(gyros).collect::<Vec<_>>())
+        let gyros = gyros.iter().map(|one| with_sigma(one.estimate, one.sigma));
+        Some([name].into_iter().chain(gyros))
     });
-    let rows: Vec<Vec<String>> = rows.collect();
     let gyros = AXES.map(|axis| Column::numbers(&format!("gyro_{axis}.bias")));
     let columns = core::iter::once(Column::words("record")).chain(gyros);
     let title = "Offsets of the turn-ons from the mean constant drifts, deg/h";
-    (!rows.is_empty()).then(|| Table::new(title, columns.collect(), rows))
+    Table::new(title, columns.collect(), rows).filled()
 }
 
 /// Sigmas from the first record alone and from all records; `None` of one record. Where turn-ons differ, constant
@@ -124,15 +110,9 @@ fn first_record(report: &CalibrationReport) -> Option<Table> {
             one.unit.clone(),
         ]
     });
-    let columns = vec![
-        Column::words("coefficient"),
-        Column::numbers("first record alone"),
-        Column::numbers("all together"),
-        Column::numbers("ratio"),
-        Column::words("unit"),
-    ];
+    let heads = "coefficient | > first record alone | > all together | > ratio | unit";
     let title = "Sigmas from the first record alone and from all records";
-    Some(Table::new(title, columns, rows))
+    Some(Table::of(title, heads, rows))
 }
 
 /// Biases of the coefficients by errors of the site; `None` for the streaming filter.
@@ -146,13 +126,11 @@ fn site(report: &CalibrationReport) -> Option<Table> {
     let columns = core::iter::once(Column::words("coefficient")).chain(heads);
     let biases: Vec<_> = sites.iter().map(|one| biases(report, one)).collect();
     let rows = report.coefficients.iter().enumerate().map(|(place, one)| {
-        let cells = biases.iter().flat_map(|all| {
+        let cells = biases.iter().flat_map(move |all| {
             let [bias, in_sigmas] = all[place];
             [format!("{bias:+.1e}"), format!("{in_sigmas:+.2}")]
         });
-        core::iter::once(one.name.clone())
-            .chain(cells)
-            .collect::<Vec<_>>()
+        [one.name.clone()].into_iter().chain(cells)
     });
     let of = match has_several(report) {
         true => "errors of the first record's site",

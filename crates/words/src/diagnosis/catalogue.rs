@@ -7,6 +7,8 @@ use gyrocal_statistics::format;
 use gyrocal_answer::Answer;
 use gyrocal_document::{Screen, Standing};
 
+use crate::files::joined;
+
 /// All that the catalogue says of an effect.
 #[must_use]
 pub fn explained(effect: &Effect) -> Screen {
@@ -14,14 +16,11 @@ pub fn explained(effect: &Effect) -> Screen {
     screen.fact("course in time", course(effect.kind));
     screen.fact("term", spaced(effect.formula));
     let parameters = effect.parameters.iter();
-    let parameters: Vec<String> = parameters
-        .map(|parameter| format!("{} [{}]", parameter.name, parameter.unit))
-        .collect();
-    screen.fact("parameters", parameters.join(", "));
+    let parameters = parameters.map(|one| format!("{} [{}]", one.name, one.unit));
+    screen.fact("parameters", joined(parameters, ", "));
     screen.fact("typical size", typical_size(effect));
     screen.fact("tested", standing(effect));
-    let needs: Vec<String> = effect.needs.iter().map(need).collect();
-    screen.fact("needs", needs.join(", "));
+    screen.fact("needs", joined(effect.needs.iter().map(need), ", "));
     if !effect.equivalents.is_empty() {
         screen.fact("same as", effect.equivalents.join(", "));
         screen.fact("because", effect.equivalence.reason);
@@ -29,17 +28,13 @@ pub fn explained(effect: &Effect) -> Screen {
     }
     screen.fact("looks like", effect.near_twins.join(", "));
     let experiments = effect.separated_by.iter().map(experiment);
-    screen.fact("told apart by", experiments.collect::<Vec<_>>().join("; "));
+    screen.fact("told apart by", joined(experiments, "; "));
     screen.fact("in a later record", later(effect.continuation));
     screen.fact("source", effect.reference);
     if effect.has_term() && !effect.is_nominal {
-        screen.then(
-            format!(
-                "gyrocal extend --effects {} --out extended.model.toml",
-                effect.id
-            ),
-            "a filter with it",
-        );
+        let id = effect.id;
+        let command = format!("gyrocal extend --effects {id} --out extended.model.toml");
+        screen.then(command, "a filter with it");
     }
     screen
 }

@@ -33,20 +33,15 @@ pub(super) fn clean(result: &Answer) -> Screen {
     screen.fact("may still hide", undetected(result));
     screen.fact("not tested", untested(result));
     if let Some(nis) = result.residuals.as_ref().and_then(|shown| shown.nis) {
-        let [low, high] = nis.band;
-        screen.fact(
-            "innovations",
-            format!("mean NIS {:.3} (expected {low:.3} to {high:.3})", nis.mean),
-        );
+        let ([low, high], mean) = (nis.band, nis.mean);
+        let words = format!("mean NIS {mean:.3} (expected {low:.3} to {high:.3})");
+        screen.fact("innovations", words);
     }
     if is_short {
         screen.fact("what to do", "record for a day or longer");
     }
-    let files = files(result);
-    screen.then(
-        format!("gyrocal calibrate {files}"),
-        "the nine coefficients with their sigmas",
-    );
+    let command = format!("gyrocal calibrate {}", files(result));
+    screen.then(command, "the nine coefficients with their sigmas");
     plan(result, &mut screen, "the run that reduces the sigmas most");
     screen
 }
@@ -59,7 +54,7 @@ fn undetected(result: &Answer) -> String {
         count => format!(
             "{count} of {} of typical size, as the record is short: {}",
             counted(result.ranking.len(), "effect"),
-            few(&low, ALTERNATIVES_SHOWN)
+            few(low, ALTERNATIVES_SHOWN)
         ),
     }
 }
@@ -67,16 +62,11 @@ fn undetected(result: &Answer) -> String {
 /// Effects that were not tested for.
 fn untested(result: &Answer) -> String {
     let others = result.not_searched.iter();
-    let others: Vec<&str> = others
-        .filter(|effect| effect.reason != NotTestedReason::LowPower)
-        .map(|effect| &*effect.effect)
-        .collect();
-    match others.len() {
-        0 => String::new(),
-        count => format!(
-            "{} (missing inputs, or on request): {}",
-            counted(count, "effect"),
-            few(&others, 2)
-        ),
+    let others = others.filter(|effect| effect.reason != NotTestedReason::LowPower);
+    let others: Vec<&str> = others.map(|effect| &*effect.effect).collect();
+    if others.is_empty() {
+        return String::new();
     }
+    let (count, named) = (counted(others.len(), "effect"), few(others, 2));
+    format!("{count} (missing inputs, or on request): {named}")
 }

@@ -2,6 +2,7 @@
 
 use gyrocal_statistics::format::short as rounded;
 
+use crate::files::joined;
 use crate::format::{short, with_sigma};
 use gyrocal_answer::{Alternative, AlternativeKind, Parameter};
 
@@ -15,7 +16,7 @@ pub fn parameter_values(parameters: &[Parameter]) -> String {
         };
         format!("{} {}{unit}", parameter.name, value(parameter))
     });
-    each.collect::<Vec<_>>().join(", ")
+    joined(each, ", ")
 }
 
 /// Estimate and sigma of a parameter, or its interval where the likelihood is not symmetric.
@@ -23,10 +24,8 @@ pub(super) fn value(parameter: &Parameter) -> String {
     match (parameter.sigma, &parameter.interval) {
         (Some(sigma), _) => with_sigma(parameter.estimate, sigma),
         (None, Some(pieces)) if !pieces.is_empty() => {
-            let piece =
-                |[low, high]: &[f64; 2]| format!("{} to {}", rounded(*low, 3), rounded(*high, 3));
-            let pieces: Vec<String> = pieces.iter().map(piece).collect();
-            let interval = pieces.join(" or ");
+            let piece = |ends: &[f64; 2]| ends.map(|end| rounded(end, 3)).join(" to ");
+            let interval = joined(pieces.iter().map(piece), " or ");
             format!("{} (95 %: {interval})", short(parameter.estimate))
         }
         (None, _) => short(parameter.estimate),

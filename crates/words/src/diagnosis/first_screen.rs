@@ -8,7 +8,7 @@ use super::clean_screen;
 use super::findings::{likely, value};
 use super::records::{self, files};
 use super::verdict;
-use crate::files::few;
+use crate::files::{few, joined};
 use crate::format::{NO_P, counted, short, tested};
 use gyrocal_answer::{Answer, Finding, FindingKind, Parameter, ResidualVerdict, Verdict};
 use gyrocal_document::{Screen, Standing};
@@ -28,6 +28,9 @@ const TOLD: f64 = 0.2;
 const STRAPDOWN: &str = "coefficients and effects are errors of the outputs of instruments that are fixed to a body, \
                          in their own axes";
 
+/// What coefficients are where something is left over.
+const BIASED: &str = "of the nominal model: they may be biased by more than their sigmas";
+
 /// The first screen: verdict, size, significance, alternatives, effect on the coefficients, next step.
 #[must_use]
 pub fn first_screen(result: &Answer) -> Screen {
@@ -43,18 +46,14 @@ pub fn first_screen(result: &Answer) -> Screen {
         screen.fact("axes", STRAPDOWN);
     }
     if let Some(group) = &result.set_ups {
-        let others: Vec<&str> = group.members.iter().skip(1).map(|own| &**own).collect();
-        screen.fact(
-            "axes",
-            format!("{} fit as well: {}", others.join(", "), group.why),
-        );
+        let others = joined(group.members.iter().skip(1), ", ");
+        screen.fact("axes", format!("{others} fit as well: {}", group.why));
     }
     if result.verdict != Verdict::Setup {
         if result.record.duration_s < LEAST_TURN_S && !result.is_strapdown() {
             screen.fact("set-up", too_short_for_turn());
         }
-        let problems = result.setup.iter().take(PROBLEMS_SHOWN);
-        for problem in problems {
+        for problem in result.setup.iter().take(PROBLEMS_SHOWN) {
             screen.fact("set-up mended", problem.placed());
         }
         if !result.search_complete {
@@ -80,12 +79,8 @@ fn found(result: &Answer) -> Screen {
     let what = match &result.findings[..] {
         [one] => format!("{}, {}", one.effect, one.name),
         several => {
-            let ids: Vec<&str> = several.iter().map(|one| &*one.effect).collect();
-            format!(
-                "{}: {}",
-                counted(several.len(), "effect"),
-                few(&ids, FINDINGS_SHOWN)
-            )
+            let ids = few(several.iter().map(|one| &one.effect), FINDINGS_SHOWN);
+            format!("{}: {ids}", counted(several.len(), "effect"))
         }
     };
     let is_settled = result.verdict == Verdict::EffectsFound;
@@ -160,10 +155,9 @@ pub fn may_also_be(result: &Answer) -> String {
     for alternative in all.flat_map(|finding| &finding.alternatives) {
         add(alternative.effect.as_str());
     }
-    let told = result.causes().filter_map(|finding| finding.none_of_these);
-    let is_untold = result
-        .causes()
-        .any(|finding| finding.none_of_these.is_none());
+    let none_of_these = || result.causes().map(|finding| finding.none_of_these);
+    let told = none_of_these().flatten();
+    let is_untold = none_of_these().any(|one| one.is_none());
     let unlisted = match told.reduce(f64::max) {
         Some(most) if most >= TOLD => Some(likely(most)),
         _ if is_untold && !result.is_settled() => Some("not estimated".to_owned()),
@@ -174,10 +168,7 @@ pub fn may_also_be(result: &Answer) -> String {
     let listed = (!names.is_empty()).then(|| few(&names, ALTERNATIVES_SHOWN));
     match (listed, unlisted) {
         (None, None) if result.causes().next().is_some() => nothing_else(result),
-        (listed, unlisted) => {
-            let all: Vec<String> = listed.into_iter().chain(unlisted).collect();
-            all.join("; ")
-        }
+        (listed, unlisted) => joined(listed.into_iter().chain(unlisted), "; "),
     }
 }
 
@@ -203,10 +194,8 @@ fn effect_on_fit(result: &Answer, screen: &mut Screen) {
         return;
     };
     let micro = |g: f64| format::short(1e6 * g, 3);
-    let left_out = format!(
-        "{:+.1} nats on left-out blocks",
-        gain.cross_validated_log_score_nats
-    );
+    let nats = gain.cross_validated_log_score_nats;
+    let left_out = format!("{nats:+.1} nats on left-out blocks");
     let shown = gain.free_run_rms_g.filter(|_| !has_random_walk(result));
     let what = match shown {
         None => left_out,
@@ -221,28 +210,26 @@ fn effect_on_fit(result: &Answer, screen: &mut Screen) {
     if let Some(validation) = &gain.validation
         && let Some(error) = &validation.compensation
     {
+        let (nats, hours) = (validation.log_score_nats, format::short(error.after_h, 3));
+        let errors = [
+            error.nominal_arcmin,
+            error.extended_arcmin,
+            error.expected_arcmin,
+        ];
+        let [before, after, expected] = errors.map(|arcmin| format::short(arcmin, 2));
         let words = format!(
-            "{:+.1} nats with it; attitude after {} h of compensation off by {} → {} arcmin ({} \
-             expected)",
-            validation.log_score_nats,
-            format::short(error.after_h, 3),
-            format::short(error.nominal_arcmin, 2),
-            format::short(error.extended_arcmin, 2),
-            format::short(error.expected_arcmin, 2)
+            "{nats:+.1} nats with it; attitude after {hours} h of compensation off by {before} → {after} arcmin \
+             ({expected} expected)"
         );
         screen.fact("later record", words);
     }
     let mut shifts: Vec<_> = gain.coefficient_shift.iter().collect();
     shifts.sort_by(|a, b| b.in_sigmas.abs().total_cmp(&a.in_sigmas.abs()));
-    let named: Vec<String> = shifts
-        .iter()
-        .take(SHIFTS_SHOWN)
-        .map(|shift| format!("{} {:+.1}", shift.coefficient, shift.in_sigmas))
-        .collect();
-    screen.fact(
-        "coefficients",
-        format!("change by {} sigma; the others less", named.join(", ")),
-    );
+    let largest = shifts.iter().take(SHIFTS_SHOWN);
+    let named = largest.map(|shift| format!("{} {:+.1}", shift.coefficient, shift.in_sigmas));
+    let named = joined(named, ", ");
+    let words = format!("change by {named} sigma; the others less");
+    screen.fact("coefficients", words);
 }
 
 /// The residual with all causes in the model.
@@ -257,35 +244,22 @@ pub(super) fn remainder(result: &Answer) -> String {
 
 fn next_of_found(result: &Answer, screen: &mut Screen) {
     let files = files(result);
-    let causes: Vec<&str> = result
-        .causes()
-        .filter(|finding| finding.accepted == Some(true))
-        .map(|finding| &*finding.effect)
-        .collect();
-    let is_one = result.records.is_empty();
-    if result
-        .findings
-        .iter()
-        .any(|finding| !finding.alternatives.is_empty())
-    {
+    let causes = result.causes();
+    let causes = causes.filter(|finding| finding.accepted == Some(true));
+    let causes = joined(causes.map(|finding| &finding.effect), ",");
+    let mut findings = result.findings.iter();
+    if findings.any(|finding| !finding.alternatives.is_empty()) {
         plan(result, screen, "the run that would distinguish them");
     }
     if causes.is_empty() {
-        let filter = result
-            .of_kind(FindingKind::Filter)
-            .chain(result.of_kind(FindingKind::Noise))
-            .next();
-        if filter.is_some() {
-            screen.then(
-                format!("gyrocal diagnose {files} --verbose"),
-                "noise and filter in detail",
-            );
+        let mut others = [FindingKind::Filter, FindingKind::Noise].into_iter();
+        if others.any(|kind| result.of_kind(kind).next().is_some()) {
+            let command = format!("gyrocal diagnose {files} --verbose");
+            screen.then(command, "noise and filter in detail");
         }
-    } else if is_one {
-        screen.then(
-            format!("gyrocal calibrate {files} --with {}", causes.join(",")),
-            "the coefficients with it in the model",
-        );
+    } else if result.records.is_empty() {
+        let command = format!("gyrocal calibrate {files} --with {causes}");
+        screen.then(command, "the coefficients with it in the model");
     } else {
         screen.then(
             "gyrocal extend RESULT.json --out NAME.model.toml",
@@ -317,22 +291,13 @@ fn unexplained(result: &Answer) -> Screen {
         "may also be",
         "an effect that the catalogue lacks: docs/adding-a-term.md adds one",
     );
-    screen.fact(
-        "coefficients",
-        "of the nominal model: they may be biased by more than their sigmas",
-    );
-    let files = files(result);
-    if result.records.is_empty() {
-        screen.then(
-            format!("gyrocal diagnose {files} --figures figures"),
-            "pictures of the residual",
-        );
-    } else {
-        screen.then(
-            format!("gyrocal diagnose {files} --report report.html"),
-            "the residual of each record",
-        );
-    }
+    screen.fact("coefficients", BIASED);
+    let (option, why) = match result.records.is_empty() {
+        true => ("--figures figures", "pictures of the residual"),
+        false => ("--report report.html", "the residual of each record"),
+    };
+    let command = format!("gyrocal diagnose {} {option}", files(result));
+    screen.then(command, why);
     screen
 }
 
@@ -340,28 +305,19 @@ fn unexplained(result: &Answer) -> Screen {
 fn not_settled(result: &Answer) -> Screen {
     let mut screen = Screen::new(Standing::Bad, "NOT SETTLED", verdict::not_settled(result));
     screen.fact("left over", remainder(result));
-    screen.fact(
-        "coefficients",
-        "of the nominal model: they may be biased by more than their sigmas",
-    );
-    screen.then(
-        format!("gyrocal diagnose {} --verbose", files(result)),
-        "statistics of all effects",
-    );
+    screen.fact("coefficients", BIASED);
+    let command = format!("gyrocal diagnose {} --verbose", files(result));
+    screen.then(command, "statistics of all effects");
     screen
 }
 
 fn wrong_setup(result: &Answer) -> Screen {
-    let mut screen = Screen::new(
-        Standing::Bad,
-        "SET-UP WRONG",
-        "the record was not diagnosed",
-    );
+    let what = "the record was not diagnosed";
+    let mut screen = Screen::new(Standing::Bad, "SET-UP WRONG", what);
+    let of = |stops: bool| result.setup.iter().filter(move |one| one.stops == stops);
     // What stops comes first.
-    let stopping = result.setup.iter().filter(|problem| problem.stops);
-    let mended = result.setup.iter().filter(|problem| !problem.stops);
-    let labelled = stopping.map(|problem| ("what is wrong", problem));
-    let labelled = labelled.chain(mended.map(|problem| ("can be mended", problem)));
+    let labelled = of(true).map(|problem| ("what is wrong", problem));
+    let labelled = labelled.chain(of(false).map(|problem| ("can be mended", problem)));
     for (label, problem) in labelled.take(PROBLEMS_SHOWN) {
         screen.fact(label, problem.text());
     }
@@ -369,19 +325,13 @@ fn wrong_setup(result: &Answer) -> Screen {
         let more = result.setup.len() - PROBLEMS_SHOWN;
         screen.fact("and", format!("{more} more"));
     }
-    let lost: Vec<&str> = SetupKind::ALL
-        .iter()
-        .filter(|kind| kind.loses_samples())
-        .map(|kind| kind.as_str())
-        .collect();
-    let mut stopping = result.setup.iter().filter(|problem| problem.stops);
-    let is_lost = stopping.any(|problem| lost.contains(&problem.kind.as_str()));
-    screen.fact(
-        "what to do",
-        match is_lost {
-            true => "record again, or diagnose the sound rows alone: docs/setup-checks.md lists what is checked",
-            false => "mend the record or its bench file: docs/setup-checks.md lists what is checked",
-        },
-    );
+    let mut lost = SetupKind::ALL.iter().filter(|kind| kind.loses_samples());
+    let is_lost = lost.any(|kind| of(true).any(|problem| problem.kind.as_str() == kind.as_str()));
+    let what = match is_lost {
+        true => "record again, or diagnose the sound rows alone",
+        false => "mend the record or its bench file",
+    };
+    let words = format!("{what}: docs/setup-checks.md lists what is checked");
+    screen.fact("what to do", words);
     screen
 }

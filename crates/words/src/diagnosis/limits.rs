@@ -2,6 +2,7 @@
 
 use gyrocal_statistics::format::percent;
 
+use crate::files::joined;
 use gyrocal_answer::{Answer, Experiment, ExperimentKind, NotTestedReason};
 
 /// Groups of effects and of set-ups that the record does not distinguish: their names, why, and the experiment that
@@ -10,9 +11,9 @@ use gyrocal_answer::{Answer, Experiment, ExperimentKind, NotTestedReason};
 pub fn groups(result: &Answer) -> Vec<[String; 3]> {
     let effects = result.findings.iter().flat_map(|finding| {
         finding.separations.iter().map(|one| {
-            let others = finding.of_kind(one.from).map(|other| &*other.effect);
-            let members: Vec<&str> = core::iter::once(&*finding.effect).chain(others).collect();
-            [members.join(", "), one.why.clone(), one.words.clone()]
+            let others = finding.of_kind(one.from).map(|other| &other.effect);
+            let members = joined([&finding.effect].into_iter().chain(others), ", ");
+            [members, one.why.clone(), one.words.clone()]
         })
     });
     let set_ups = result.set_ups.iter();
@@ -30,11 +31,9 @@ pub const SET_UPS_WITHOUT_ANGLES: &str =
 /// Reason why the members of a confidence set are not distinguished.
 #[must_use]
 pub fn why_not_distinguished(coverage: Option<f64>) -> String {
-    let set = coverage.map_or_else(String::new, |coverage| {
-        format!(
-            "; the confidence set has a coverage of {}",
-            percent(coverage)
-        )
+    let set = coverage.map(percent);
+    let set = set.map_or_else(String::new, |coverage| {
+        format!("; the confidence set has a coverage of {coverage}")
     });
     format!(
         "they explain this record nearly equally well, once the nine coefficients and the first \
@@ -63,8 +62,7 @@ pub fn would_distinguish(testable: &[String], experiments: &[Experiment]) -> Str
     let option = (!testable.is_empty())
         .then(|| format!("--effects {} tests them against it", testable.join(",")));
     let experiments = experiments.iter().map(experiment);
-    let all: Vec<String> = option.into_iter().chain(experiments).collect();
-    all.join("; ")
+    joined(option.into_iter().chain(experiments), "; ")
 }
 
 fn experiment(experiment: &Experiment) -> String {

@@ -2,7 +2,7 @@
 
 use gyrocal_statistics::format::with_sigma;
 
-use crate::files::{input_files, record_and_bench};
+use crate::files::{input_files, joined, record_and_bench};
 use gyrocal_answer::{Answer, Finding, FindingKind, SizeChoice, Verdict};
 
 /// Whether an effect has one size in all records, and its sizes in each.
@@ -21,21 +21,16 @@ pub fn sizes(finding: &Finding) -> Option<String> {
             format!("one size or one for each turn-on: cannot be told apart ({odds:.1} nats)")
         }
     };
-    let unit = finding.parameters.first().map_or("1", |size| &*size.unit);
-    let unit = if unit == "1" {
-        String::new()
-    } else {
-        format!(" {unit}")
+    let unit = match finding.parameters.first().map_or("1", |size| &*size.unit) {
+        "1" => String::new(),
+        unit => format!(" {unit}"),
     };
     let sizes = found.sizes.iter().map(|one| {
         let own = one.estimates.iter();
-        let own: Vec<String> = own
-            .map(|size| with_sigma(size.estimate, size.sigma))
-            .collect();
-        format!("{} in record {}", own.join(", "), one.record + 1)
+        let own = own.map(|size| with_sigma(size.estimate, size.sigma));
+        format!("{} in record {}", joined(own, ", "), one.record + 1)
     });
-    let sizes: Vec<String> = sizes.collect();
-    Some(format!("{words}: {}{unit}", sizes.join(", ")))
+    Some(format!("{words}: {}{unit}", joined(sizes, ", ")))
 }
 
 /// The answer of a record alone, in a few words.
@@ -46,13 +41,13 @@ pub fn alone(result: &Answer) -> String {
         Verdict::Clean => "no fault found".to_owned(),
         Verdict::Unexplained => "unexplained".to_owned(),
         Verdict::Setup => "wrong set-up".to_owned(),
-        _ => {
+        verdict => {
             let findings = result.findings.iter();
-            let ids: Vec<&str> = findings.map(|finding| &*finding.effect).collect();
-            match (result.verdict, ids.is_empty()) {
+            let ids = joined(findings.map(|finding| &finding.effect), ", ");
+            match (verdict, ids.is_empty()) {
                 (Verdict::NotSettled, true) => "not settled".to_owned(),
-                (Verdict::NotSettled, false) => format!("{} (not settled)", ids.join(", ")),
-                _ => ids.join(", "),
+                (Verdict::NotSettled, false) => format!("{ids} (not settled)"),
+                _ => ids,
             }
         }
     }
@@ -61,8 +56,7 @@ pub fn alone(result: &Answer) -> String {
 /// Words of the first screen: what each record tells of the causes, or that none shows any alone.
 pub(super) fn fact(result: &Answer) -> String {
     let causes = result.of_kind(FindingKind::Cause);
-    let sizes: Vec<String> = causes.filter_map(sizes).collect();
-    sizes.join("; ")
+    joined(causes.filter_map(sizes), "; ")
 }
 
 /// The files of a result as arguments of `calibrate` and `diagnose`, as a shell reads them: records, bench files

@@ -1,5 +1,6 @@
 //! What a residual test found.
 
+use crate::files::joined;
 use gyrocal_answer::{ResidualTest, ResidualVerdict, UnmodelledPattern, UnmodelledTerm};
 
 /// The structure that a residual test found, or the tests that it could not make; empty if the
@@ -9,16 +10,10 @@ pub fn residual_description(test: &ResidualTest) -> String {
     match test.verdict {
         ResidualVerdict::White => String::new(),
         ResidualVerdict::NotTested => {
-            let missing = [
-                (test.line.is_none(), "spectral lines"),
-                (
-                    test.correlation.is_none(),
-                    "correlation of neighbouring rows",
-                ),
-            ];
-            let missing = missing.iter().filter(|(missing, _)| *missing);
-            let missing: Vec<&str> = missing.map(|(_, test)| *test).collect();
-            missing.join(" and ")
+            let lines = test.line.is_none().then_some("spectral lines");
+            let correlation = test.correlation.is_none();
+            let correlation = correlation.then_some("correlation of neighbouring rows");
+            joined(lines.into_iter().chain(correlation), " and ")
         }
         ResidualVerdict::Unexplained => {
             let line = test.line.as_ref().filter(|line| line.significant);
@@ -38,8 +33,7 @@ pub fn residual_description(test: &ResidualTest) -> String {
                 )
             });
             let terms = test.unmodelled.iter().map(unmodelled);
-            let all: Vec<String> = line.into_iter().chain(correlation).chain(terms).collect();
-            all.join("; ")
+            joined(line.into_iter().chain(correlation).chain(terms), "; ")
         }
     }
 }

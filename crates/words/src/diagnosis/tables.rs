@@ -26,25 +26,17 @@ pub fn residuals(result: &Answer) -> impl Iterator<Item = Table> {
 /// The detected effects with size, significance and gain; `None` without any.
 #[must_use]
 pub fn findings(result: &Answer) -> Option<Table> {
-    let columns =
-        Column::heads("effect | parameter | > estimate | unit | > z | > p | > gain, nats");
+    let heads = "effect | parameter | > estimate | unit | > z | > p | > gain, nats";
     let mut rows = Vec::new();
     for finding in &result.findings {
         let mut head = [
             finding.effect.clone(),
             format!("{:.1}", finding.z),
-            finding
-                .p_value
-                .map_or_else(|| "not computed".to_owned(), p_cell),
+            finding.p_value.map_or("not computed".to_owned(), p_cell),
             gain(finding),
         ];
-        let parameters = finding.parameters.iter().map(|parameter| {
-            [
-                parameter.name.clone(),
-                value(parameter),
-                parameter.unit.clone(),
-            ]
-        });
+        let parameters = finding.parameters.iter();
+        let parameters = parameters.map(|one| [one.name.clone(), value(one), one.unit.clone()]);
         let mut parameters: Vec<[String; 3]> = parameters.collect();
         if parameters.is_empty() {
             parameters.push(Default::default());
@@ -54,7 +46,7 @@ pub fn findings(result: &Answer) -> Option<Table> {
             rows.push(vec![effect, name, value, unit, z, p, gain]);
         }
     }
-    (!rows.is_empty()).then(|| Table::new("Size and significance", columns, rows))
+    Table::of("Size and significance", heads, rows).filled()
 }
 
 /// The coefficients of the extended model with their intervals over the sets; `None` if no effect was accepted.
@@ -77,10 +69,10 @@ pub fn over_sets(shown: &Coefficients) -> Option<Table> {
             nominal.unit.clone(),
         ]
     });
-    Some(Table::new(
+    Some(Table::of(
         "Drift coefficients, noise as estimated; the 95 % interval is over all members of the confidence sets, \
                 weighted by their likelihoods",
-        Column::heads("coefficient | > nominal model | > extended model | > 95 % interval | unit"),
+        "coefficient | > nominal model | > extended model | > 95 % interval | unit",
         rows,
     ))
 }
@@ -131,25 +123,21 @@ fn of_nominal(shown: &Residuals) -> Table {
 /// The first effects of the search by their statistics; `None` without a search.
 #[must_use]
 pub fn ranking(result: &Answer) -> Option<Table> {
-    let all = &result.ranking;
+    let all = result.ranking.len();
     let threshold = result.threshold.map_or_else(String::new, |threshold| {
         format!("; detection threshold {threshold:.1}")
     });
-    (!all.is_empty()).then(|| Table::new(&format!(
-            "Top {} of {} hypotheses, score statistic (chi-square, penalised for the search over \
-             onset or time constant){threshold}",
-            all.len().min(TOP),
-            all.len()
-        ), Column::heads("effect | > statistic | "), all
-            .iter()
-            .take(TOP)
-            .map(|ranked| {
-                vec![
-                    ranked.effect.clone(),
-                    format!("{:.1}", ranked.statistic),
-                    role(result, &ranked.effect),
-                ]
-            })))
+    let title = format!(
+        "Top {} of {all} hypotheses, score statistic (chi-square, penalised for the search over onset or time \
+         constant){threshold}",
+        all.min(TOP)
+    );
+    let rows = result.ranking.iter().take(TOP).map(|ranked| {
+        let statistic = format!("{:.1}", ranked.statistic);
+        let role = role(result, &ranked.effect);
+        [ranked.effect.clone(), statistic, role]
+    });
+    Table::of(&title, "effect | > statistic | ", rows).filled()
 }
 
 /// Role of a ranked effect in the answer.
@@ -158,11 +146,8 @@ fn role(result: &Answer, effect: &str) -> String {
         if finding.effect == effect {
             return "detected".to_owned();
         }
-        if finding
-            .alternatives
-            .iter()
-            .any(|other| other.effect == effect)
-        {
+        let mut others = finding.alternatives.iter();
+        if others.any(|other| other.effect == effect) {
             return format!("alternative to {}", finding.effect);
         }
     }
@@ -173,37 +158,30 @@ fn role(result: &Answer, effect: &str) -> String {
 #[must_use]
 pub fn shifts(gain: &Gain) -> Table {
     let rows = gain.coefficient_shift.iter().map(|shift| {
-        vec![
+        [
             shift.coefficient.clone(),
             format!("{:+.2e}", shift.shift),
             format!("{:+.1}", shift.in_sigmas),
             shift.unit.clone(),
         ]
     });
-    Table::new(
-        &format!(
-            "Coefficient changes with {} in the model",
-            gain.effects.join(", ")
-        ),
-        Column::heads("coefficient | > change | > in sigmas | unit"),
-        rows,
-    )
+    let effects = gain.effects.join(", ");
+    let title = format!("Coefficient changes with {effects} in the model");
+    Table::of(&title, "coefficient | > change | > in sigmas | unit", rows)
 }
 
 fn noise(result: &Answer) -> Option<Table> {
     let extended = result.coefficients.as_ref();
-    let model = if extended.is_some_and(|coefficients| coefficients.extended.is_some()) {
-        "extended model"
-    } else {
-        "nominal model"
+    let model = match extended.is_some_and(|coefficients| coefficients.extended.is_some()) {
+        true => "extended model",
+        false => "nominal model",
     };
     // Channels of a sensor are in the order of the axes.
     let row = |name: &str, sensor: &str| -> Vec<String> {
-        let own = result
-            .noise
-            .iter()
-            .filter(|level| level.channel.starts_with(sensor));
-        core::iter::once(name.to_owned())
+        let all = result.noise.iter();
+        let own = all.filter(|level| level.channel.starts_with(sensor));
+        [name.to_owned()]
+            .into_iter()
             .chain(own.map(interval))
             .collect()
     };
@@ -215,13 +193,10 @@ fn noise(result: &Answer) -> Option<Table> {
         true => "; no row for the gyros, as the noise of the accelerometers is correlated",
         false => "",
     };
-    (!result.noise.is_empty()).then(|| {
-        Table::new(
-            &format!("Estimated / declared noise (95 % CI), {model}{of_gyros}"),
-            by_axis(),
-            core::iter::once(row("accelerometers", "accel_")).chain(gyros),
-        )
-    })
+    let title = format!("Estimated / declared noise (95 % CI), {model}{of_gyros}");
+    let accelerometers = [row("accelerometers", "accel_")].into_iter();
+    let table = Table::new(&title, by_axis(), accelerometers.chain(gyros));
+    (!result.noise.is_empty()).then_some(table)
 }
 
 fn interval(found: &NoiseLevel) -> String {

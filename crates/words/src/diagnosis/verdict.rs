@@ -2,7 +2,7 @@
 
 use gyrocal_record::printable_line;
 
-use crate::files::few;
+use crate::files::{few, joined};
 use crate::format::counted;
 use gyrocal_answer::{Answer, SetupProblem};
 use gyrocal_document::{List, Words};
@@ -12,38 +12,30 @@ const RECORDS_SHOWN: usize = 4;
 
 /// The record and its size.
 pub(super) fn record(result: &Answer) -> String {
-    if !result.records.is_empty() {
-        let names: Vec<&str> = result.records.iter().map(|one| &*one.name).collect();
-        return format!(
-            "{} together ({}): {} over {:.2} days",
-            counted(names.len(), "record"),
-            few(&names, RECORDS_SHOWN),
-            counted(result.record.rows, "row"),
-            result.record.duration_s / 86_400.0
-        );
+    let (rows, days) = (result.record.rows, result.record.duration_s / 86_400.0);
+    let size = format!("{} over {days:.2} days", counted(rows, "row"));
+    if result.records.is_empty() {
+        let path = result.manifest.inputs.first();
+        let name = path.map_or("record".into(), |input| printable_line(&input.path));
+        return format!("{name}: {size}");
     }
-    let path = result.manifest.inputs.first();
-    format!(
-        "{}: {} over {:.2} days",
-        path.map_or("record".into(), |input| printable_line(&input.path)),
-        counted(result.record.rows, "row"),
-        result.record.duration_s / 86_400.0
-    )
+    let count = counted(result.records.len(), "record");
+    let names = few(result.records.iter().map(|one| &one.name), RECORDS_SHOWN);
+    format!("{count} together ({names}): {size}")
 }
 
 /// Why names are not settled.
 #[must_use]
 pub fn not_settled(result: &Answer) -> String {
     let cut = (!result.search_complete).then_some("the search ended at its budget of work");
-    let left = result
-        .is_unexplained()
-        .then_some("what is left is not white");
-    let why: Vec<&str> = cut.into_iter().chain(left).collect();
+    let left = result.is_unexplained();
+    let left = left.then_some("what is left is not white");
+    let why = joined(cut.into_iter().chain(left), ", and ");
     let found = match result.findings.len() {
         0 => "no effect is named".to_owned(),
         count => format!("{} so far", counted(count, "effect")),
     };
-    format!("{found}, {}", why.join(", and "))
+    format!("{found}, {why}")
 }
 
 /// Gross errors of the set-up, as a list; `None` if there are none.
