@@ -23,6 +23,7 @@ use crate::numbers::positive;
 use crate::outputs::manifest_of;
 use crate::page::{self, Views};
 use crate::progress::Progress;
+use crate::records::with_role;
 use crate::{Failure, Reply, exit, gyro_axes, records};
 pub use failed::NotCalibrated;
 use failed::WrongSetup;
@@ -121,29 +122,18 @@ impl CalibrateArguments {
 
     /// The files that are read.
     fn inputs(&self) -> Vec<(InputRole, &Path)> {
-        let all = [
-            (InputRole::Record, &self.records),
-            (InputRole::Bench, &self.benches),
-            (InputRole::GyroAxes, &self.gyro_axes),
-        ];
-        let files = all
-            .into_iter()
-            .flat_map(|(role, files)| files.iter().map(move |file| (role, file.as_path())));
-        let map = self.map.path().map(|path| (InputRole::Columns, path));
-        files.chain(map).collect()
+        let mut all: Vec<_> = with_role(InputRole::Record, &self.records).collect();
+        all.extend(with_role(InputRole::Bench, &self.benches));
+        all.extend(with_role(InputRole::GyroAxes, &self.gyro_axes));
+        all.extend(self.map.input());
+        all
     }
 
     /// Checks what clap cannot express.
     fn check(&self) -> Result<(), Failure> {
         let usage = |message: String| Err(Failure::Usage(message));
-        let (records, benches) = (self.records.len(), self.benches.len());
-        if benches != 1 && benches != records {
-            return usage(format!(
-                "{benches} bench files for {records} {}: give --bench once for all records, or \
-                 once for each in their order",
-                if records == 1 { "record" } else { "records" }
-            ));
-        }
+        let records = self.records.len();
+        records::check_benches(self.benches.len(), records)?;
         if !self.with.is_empty() && records > 1 {
             return usage(format!(
                 "--with goes with one record, {records} are given: calibrate them one by one"

@@ -5,26 +5,12 @@ use std::ffi::OsString;
 use clap::{CommandFactory as _, FromArgMatches, Parser, Subcommand};
 use gyrocal_record::printable_line;
 
-use crate::allan::AllanArguments;
-use crate::calibrate::CalibrateArguments;
-use crate::characterise::CharacteriseArguments;
-use crate::diagnose::DiagnoseArguments;
-use crate::effects::EffectsArguments;
-use crate::emit::EmitArguments;
-use crate::exit;
-use crate::extend::ExtendArguments;
-use crate::help;
-use crate::import::ImportArguments;
-use crate::manual::{CompletionsArguments, ManArguments};
-use crate::monte_carlo::MonteCarloArguments;
-use crate::plan::PlanArguments;
-use crate::plant::{NewPlantArguments, PlantArguments, PlantCli};
-use crate::rates::RatesArguments;
-use crate::report::ReportArguments;
-use crate::simulate::SimulateArguments;
+use crate::plant::PlantCli;
 use crate::terminal::{Shown, color_of};
-use crate::tumble::TumbleArguments;
-use crate::watch::WatchArguments;
+use crate::{
+    allan, calibrate, characterise, diagnose, effects, emit, exit, extend, help, import, manual,
+    monte_carlo, plan, plant, rates, report, simulate, tumble, watch,
+};
 
 /// Calibration and diagnosis of gyro drift of inertially stabilised platforms.
 #[derive(Debug, Parser)]
@@ -42,25 +28,25 @@ pub(crate) struct Cli {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    Allan(AllanArguments),
-    Calibrate(CalibrateArguments),
-    Characterise(CharacteriseArguments),
-    Completions(CompletionsArguments),
-    Diagnose(DiagnoseArguments),
-    Effects(EffectsArguments),
-    Emit(EmitArguments),
-    Extend(ExtendArguments),
-    Import(ImportArguments),
-    Man(ManArguments),
-    MonteCarlo(MonteCarloArguments),
-    NewPlant(NewPlantArguments),
-    Plan(PlanArguments),
-    Plant(PlantArguments),
-    Rates(RatesArguments),
-    Report(ReportArguments),
-    Simulate(SimulateArguments),
-    Tumble(TumbleArguments),
-    Watch(WatchArguments),
+    Allan(allan::AllanArguments),
+    Calibrate(calibrate::CalibrateArguments),
+    Characterise(characterise::CharacteriseArguments),
+    Completions(manual::CompletionsArguments),
+    Diagnose(diagnose::DiagnoseArguments),
+    Effects(effects::EffectsArguments),
+    Emit(emit::EmitArguments),
+    Extend(extend::ExtendArguments),
+    Import(import::ImportArguments),
+    Man(manual::ManArguments),
+    MonteCarlo(monte_carlo::MonteCarloArguments),
+    NewPlant(plant::NewPlantArguments),
+    Plan(plan::PlanArguments),
+    Plant(plant::PlantArguments),
+    Rates(rates::RatesArguments),
+    Report(report::ReportArguments),
+    Simulate(simulate::SimulateArguments),
+    Tumble(tumble::TumbleArguments),
+    Watch(watch::WatchArguments),
 }
 
 /// The definition of the command line, with examples and exit codes: that of its parser, its help, its

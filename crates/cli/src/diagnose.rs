@@ -19,6 +19,7 @@ use crate::numbers::probability;
 use crate::outputs::{manifest_of, refuse_itself, write_answer};
 use crate::page::{self, Views};
 use crate::progress::Progress;
+use crate::records::{Given, with_role};
 use crate::{Failure, Reply, exit, gyro_axes, records};
 pub use failed::NotDiagnosed;
 
@@ -104,34 +105,27 @@ impl DiagnoseArguments {
         }
     }
 
-    /// Each record with its bench file.
-    fn pairs(&self) -> impl Iterator<Item = (&PathBuf, &PathBuf)> {
-        let benches = self.benches.iter().cycle();
-        self.records.iter().zip(benches)
+    fn given(&self) -> Given<'_> {
+        Given {
+            records: &self.records,
+            benches: &self.benches,
+            axes: &self.gyro_axes,
+            map: &self.map,
+        }
     }
 
     /// The files that are read.
     fn inputs(&self) -> Vec<(InputRole, &Path)> {
-        let later = [
-            (InputRole::LaterRecord, &self.validate),
-            (InputRole::LaterBench, &self.validate_bench),
-        ];
-        let later_axes = (InputRole::LaterGyroAxes, &self.validate_gyro_axes);
-        fn given((role, file): (InputRole, &Option<PathBuf>)) -> Option<(InputRole, &Path)> {
-            Some((role, file.as_deref()?))
-        }
-        let pairs = self.pairs().flat_map(|(record, bench)| {
-            let pair = [(InputRole::Record, record), (InputRole::Bench, bench)];
-            pair.map(|(role, path)| (role, path.as_path()))
-        });
-        let axes = self.gyro_axes.iter();
-        let axes = axes.map(|path| (InputRole::GyroAxes, path.as_path()));
-        pairs
-            .chain(later.into_iter().filter_map(given))
-            .chain(axes)
-            .chain(given(later_axes))
-            .chain(self.map.path().map(|path| (InputRole::Columns, path)))
-            .collect()
+        let mut all = self.given().inputs();
+        all.extend(with_role(InputRole::LaterRecord, &self.validate));
+        all.extend(with_role(InputRole::LaterBench, &self.validate_bench));
+        all.extend(with_role(InputRole::GyroAxes, &self.gyro_axes));
+        all.extend(with_role(
+            InputRole::LaterGyroAxes,
+            &self.validate_gyro_axes,
+        ));
+        all.extend(self.map.input());
+        all
     }
 }
 
@@ -192,9 +186,7 @@ pub(crate) fn run(arguments: &DiagnoseArguments) -> Result<Reply, Failure> {
 
 /// The files that are read. Arguments that contradict each other are refused before that.
 fn checked_inputs(arguments: &DiagnoseArguments) -> Result<Vec<(InputRole, &Path)>, Failure> {
-    let records = arguments.records.len();
-    records::check_benches(arguments.benches.len(), records)?;
-    gyro_axes::check(&arguments.gyro_axes, records)?;
+    arguments.given().check()?;
     let is_unit = !arguments.gyro_axes.is_empty();
     if is_unit && arguments.validate.is_some() && arguments.validate_gyro_axes.is_none() {
         return Err(Failure::Usage(

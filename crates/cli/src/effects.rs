@@ -3,7 +3,7 @@
 use clap::Args;
 use gyrocal::effect::Enters;
 use gyrocal::{EFFECTS, Effect};
-use gyrocal_document::{Column, Screen, Standing, Table};
+use gyrocal_document::{Screen, Standing, Table};
 use gyrocal_record::{any_of, nearest_names, printable_line};
 use gyrocal_words::{explained, tested, typical_size};
 use miette::miette;
@@ -31,10 +31,8 @@ pub(crate) fn run(arguments: &EffectsArguments) -> Result<Reply, Failure> {
     if let Some(effect) = EFFECTS.iter().find(|effect| effect.id == id) {
         return Ok(Reply::of(explained(effect), String::new()));
     }
-    let family: Vec<&Effect> = EFFECTS
-        .iter()
-        .filter(|effect| effect.family == id)
-        .collect();
+    let family = EFFECTS.iter().filter(|effect| effect.family == id);
+    let family: Vec<&Effect> = family.collect();
     if let Some(first) = family.first() {
         let mut screen = explained(first);
         let ids: Vec<&str> = family.iter().map(|effect| effect.id).collect();
@@ -77,18 +75,10 @@ fn overview() -> Screen {
             None => parts.push((part, vec![effect.family])),
         }
     }
-    let tested = EFFECTS
-        .iter()
-        .filter(|effect| effect.default_search)
-        .count();
-    let mut screen = Screen::new(
-        Standing::Neutral,
-        "EFFECTS",
-        format!(
-            "{} of the catalogue, {tested} of them tested without being asked for",
-            EFFECTS.len()
-        ),
-    );
+    let tested = EFFECTS.iter().filter(|effect| effect.default_search);
+    let (all, tested) = (EFFECTS.len(), tested.count());
+    let what = format!("{all} of the catalogue, {tested} of them tested without being asked for");
+    let mut screen = Screen::new(Standing::Neutral, "EFFECTS", what);
     for (part, families) in &parts {
         screen.fact(part, families.join(", "));
     }
@@ -103,14 +93,9 @@ fn overview() -> Screen {
 /// A table of effects with name and unit.
 fn listed(effects: impl Iterator<Item = &'static Effect>) -> String {
     let rows = effects.map(|effect| {
-        let (size, tested) = (typical_size(effect), tested(effect));
-        [
-            effect.id.to_owned(),
-            size,
-            tested.to_string(),
-            effect.name.to_owned(),
-        ]
+        let [id, tested, name] = [effect.id, tested(effect), effect.name].map(str::to_owned);
+        [id, typical_size(effect), tested, name]
     });
-    let columns = Column::heads("id | > typical size | tested | meaning");
-    format!("{}\n", drawn(&Table::new("", columns, rows)))
+    let heads = "id | > typical size | tested | meaning";
+    format!("{}\n", drawn(&Table::of("", heads, rows)))
 }

@@ -118,15 +118,9 @@ fn report(extension: &Extension, inputs: &[&Path]) -> Result<ExtensionReport, Fa
 
 fn summary(arguments: &ExtendArguments, extension: &Extension) -> Screen {
     let model = &extension.model;
-    let mut screen = Screen::new(
-        Standing::Good,
-        "MODEL FILE",
-        format!(
-            "{}: the nine drift coefficients and {}",
-            printable_path(&arguments.out),
-            model.effects.join(", ")
-        ),
-    );
+    let (out, effects) = (printable_path(&arguments.out), model.effects.join(", "));
+    let what = format!("{out}: the nine drift coefficients and {effects}");
+    let mut screen = Screen::new(Standing::Good, "MODEL FILE", what);
     if model.gyros == Gyros::Strapdown {
         screen.fact(
             "gyros",
@@ -150,24 +144,19 @@ fn summary(arguments: &ExtendArguments, extension: &Extension) -> Screen {
         .filter(|k| model.effects.iter().any(|id| id == k.id));
     for id in listed.flat_map(|effect| &effect.shapes) {
         if !model.shapes.iter().any(|(given, _)| given == id) {
-            screen.fact(
-                "input",
-                format!("{id} is an input of the model; give it in [shapes] to build it in"),
-            );
+            let words =
+                format!("{id} is an input of the model; give it in [shapes] to build it in");
+            screen.fact("input", words);
         }
     }
     for (id, others) in &extension.equivalents {
-        screen.fact(
-            "may also be",
-            format!("exact equivalents of {id}: {}", others.join(", ")),
-        );
+        let words = format!("exact equivalents of {id}: {}", others.join(", "));
+        screen.fact("may also be", words);
     }
     for (id, why) in &extension.left_out {
         screen.fact("left out", format!("{id} {why}"));
     }
-    screen.fact(
-        "what to do",
-        "derive the filter in your package: docs/extending.md",
-    );
+    let words = "derive the filter in your package: docs/extending.md";
+    screen.fact("what to do", words);
     screen
 }

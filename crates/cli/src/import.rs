@@ -202,17 +202,26 @@ fn disturbed_s(report: &ImportReport) -> f64 {
 /// Threshold of a difference from Earth rate beyond noise, in standard deviations.
 const FAR_SIGMAS: f64 = 6.0;
 
+/// Rates that can be held against Earth rate: name, rate with its standard deviation, and what is expected.
+fn compared(report: &ImportReport) -> [(&'static str, [f64; 2], f64); 2] {
+    let (horizontal, vertical) = (
+        report.expected_horizontal_rate_deg_per_h,
+        report.expected_vertical_rate_deg_per_h,
+    );
+    [
+        ("horizontal", report.horizontal_rate_deg_per_h, horizontal),
+        ("vertical", report.vertical_rate_deg_per_h, vertical),
+    ]
+}
+
+fn is_far([rate, sigma]: [f64; 2], expected: f64) -> bool {
+    (rate - expected).abs() > FAR_SIGMAS * sigma
+}
+
 fn rates(text: &mut String, report: &ImportReport) {
     text.push_str("\nRate of gravity in the analytic platform [deg/h]:\n");
     let vertical = report.expected_vertical_rate_deg_per_h;
-    let mut lines = vec![
-        (
-            "horizontal",
-            report.horizontal_rate_deg_per_h,
-            report.expected_horizontal_rate_deg_per_h,
-        ),
-        ("vertical", report.vertical_rate_deg_per_h, vertical),
-    ];
+    let mut lines = compared(report).to_vec();
     if let Some(projection) = report.vertical_projection_deg_per_h {
         lines.push(("vertical, mean of the gyros", projection, vertical));
         lines.push((
@@ -227,7 +236,7 @@ fn rates(text: &mut String, report: &ImportReport) {
             "  {name:<10} {rate:.4} ± {sigma:.4}, Earth {expected:.4}, difference {:.4}",
             rate - expected
         );
-        if (rate - expected).abs() > FAR_SIGMAS * sigma {
+        if is_far([rate, sigma], expected) {
             let _ = writeln!(
                 text,
                 "  {:<10} far off: check latitude, units and axes in the log description, and the \

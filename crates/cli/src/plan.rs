@@ -12,13 +12,14 @@ use gyrocal::generated::MODEL_HASH;
 use gyrocal_calibration::Run;
 use gyrocal_design::{Aim, PlanOptions, plan};
 use gyrocal_pages::of_plan;
-use gyrocal_record::{Bench, InputRole, RecordFile};
+use gyrocal_record::InputRole;
 
 use crate::numbers::{positive, probability};
 use crate::outputs::manifest_of;
 use crate::page::Views;
 use crate::progress::Progress;
-use crate::{Failure, Reply, gyro_axes, records};
+use crate::records::{Given, with_role};
+use crate::{Failure, Reply, records};
 pub use failed::NotPlanned;
 use options::{durations_s, goal, limit, limits, refuse_repeated, wished_sigma};
 
@@ -82,30 +83,22 @@ pub(crate) struct PlanArguments {
 }
 
 impl PlanArguments {
-    /// Each record with its bench file.
-    fn pairs(&self) -> impl Iterator<Item = (&PathBuf, &PathBuf)> {
-        let benches = self.benches.iter().cycle();
-        self.records.iter().zip(benches)
+    fn given(&self) -> Given<'_> {
+        Given {
+            records: &self.records,
+            benches: &self.benches,
+            axes: &self.gyro_axes,
+            map: &self.map,
+        }
     }
 
     /// The files that are read: each record with its bench file, then axes, in the order of the records.
     fn inputs(&self) -> Vec<(InputRole, &Path)> {
-        let pairs = self
-            .pairs()
-            .flat_map(|(record, bench)| [(InputRole::Record, record), (InputRole::Bench, bench)]);
-        let axes = self
-            .gyro_axes
-            .iter()
-            .map(|path| (InputRole::GyroAxes, path));
-        let diagnosis = self
-            .diagnosis
-            .iter()
-            .map(|path| (InputRole::Diagnosis, path));
-        let files = pairs.chain(axes).chain(diagnosis);
-        files
-            .map(|(role, path)| (role, path.as_path()))
-            .chain(self.map.path().map(|path| (InputRole::Columns, path)))
-            .collect()
+        let mut all = self.given().inputs();
+        all.extend(with_role(InputRole::GyroAxes, &self.gyro_axes));
+        all.extend(with_role(InputRole::Diagnosis, &self.diagnosis));
+        all.extend(self.map.input());
+        all
     }
 }
 
@@ -123,19 +116,13 @@ const DIAGNOSED: f64 = 0.5;
 
 /// Runs the command; returns the text for stdout.
 pub(crate) fn run(arguments: &PlanArguments) -> Result<Reply, Failure> {
-    records::check_benches(arguments.benches.len(), arguments.records.len())?;
-    gyro_axes::check(&arguments.gyro_axes, arguments.records.len())?;
+    arguments.given().check()?;
     let read = arguments.inputs();
     let inputs: Vec<&Path> = read.iter().map(|(_, path)| *path).collect();
     refuse_repeated(&arguments.limits)?;
     let json = arguments.json.as_deref();
     arguments.views.check(&inputs, json, &[])?;
-    let benches = arguments.pairs().map(|(_, bench)| Bench::read(bench));
-    let benches: Vec<Bench> = benches.collect::<Result<_, _>>()?;
-    let files = arguments.records.iter();
-    let files: Vec<RecordFile> = files
-        .map(|path| arguments.map.read(path))
-        .collect::<Result<_, _>>()?;
+    let (files, benches) = arguments.given().read()?;
     let rows = files.iter().map(|file| file.record().len()).sum();
     tracing::info!(rows, records = files.len(), "read");
     let mut progress = Progress::waiting("planning", rows);

@@ -141,12 +141,10 @@ fn of_record(
     bench_path: &Path,
     arguments: &ReportArguments,
 ) -> Result<(Part, Option<Budget>), Failure> {
-    let map = &arguments.map;
     let bench = Bench::read(bench_path)?;
     let options = DiagnoseOptions::default();
     let pair = [(InputRole::Record, path), (InputRole::Bench, bench_path)];
-    let map_file = map.path().map(|path| (InputRole::Columns, path));
-    let inputs: Vec<(InputRole, &Path)> = pair.into_iter().chain(map_file).collect();
+    let inputs: Vec<(InputRole, &Path)> = pair.into_iter().chain(arguments.map.input()).collect();
     let origin = manifest_of(MODEL_HASH, options.seed, &inputs)?;
     let _progress = Progress::waiting("diagnosing", file.record().len());
     let gate = Gate::of_file(PlatformKind::Stabilised, file, &bench, &options.calibration)?;

@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use gyrocal::generated::MODEL_HASH;
 use gyrocal_diagnosis::{WatchCause, WatchOptions, WatchReplay, WatchResult, watch_record};
-use gyrocal_document::{Column, Screen, Standing, Table, Words};
+use gyrocal_document::{Screen, Standing, Table, Words};
 use gyrocal_record::Bench;
+use gyrocal_words::joined;
 
 use crate::diagnose::NotDiagnosed;
 use crate::layout::layout;
@@ -74,14 +75,9 @@ fn screen(replay: &WatchReplay) -> Screen {
         count => Screen::new(Standing::Bad, &format!("{count} ALARMS"), watched),
     };
     for alarm in &replay.alarms {
-        let causes: Vec<String> = alarm.refined.iter().map(cause).collect();
-        let words = format!(
-            "row {}, {:.0} s: {}",
-            alarm.row,
-            alarm.time_s,
-            causes.join("; or ")
-        );
-        screen.fact("alarm", words);
+        let (row, time_s) = (alarm.row, alarm.time_s);
+        let causes = joined(alarm.refined.iter().map(cause), "; or ");
+        screen.fact("alarm", format!("row {row}, {time_s:.0} s: {causes}"));
         if !alarm.walks.is_empty() {
             let words = format!("{}, larger than declared", alarm.walks.join(", "));
             screen.fact("may also be", words);
@@ -133,6 +129,6 @@ fn causes(title: &str, causes: &[WatchCause]) -> Table {
             format!("{:.1}", cause.deviance),
         ]
     });
-    let columns = Column::heads("effect | > size | > sigma | unit | > since, s | > deviance");
-    Table::new(title, columns, rows)
+    let heads = "effect | > size | > sigma | unit | > since, s | > deviance";
+    Table::of(title, heads, rows)
 }

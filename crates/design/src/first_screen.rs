@@ -2,9 +2,9 @@
 
 use gyrocal_document::{Screen, Standing};
 use gyrocal_record::{InputRole, shell_quoted};
-use gyrocal_words::{counted, few, record_and_bench};
+use gyrocal_words::{counted, few, joined, record_and_bench};
 
-use crate::prose::{attitude, hours, known, percent, undecided, unit_angles};
+use crate::prose::{attitude, durations, hours, known, percent, undecided, unit_angles};
 use crate::result::{Aim, AttitudeOf, PlanResult, Proposal};
 
 /// Names of a list that are shown.
@@ -32,33 +32,19 @@ pub fn first_screen(plan: &PlanResult) -> Screen {
     if let Some(best) = plan.proposals.first() {
         expectation(plan, best, &mut screen);
     }
-    let mut durations: Vec<f64> = plan.proposals.iter().map(|run| run.duration_s).collect();
-    durations.dedup();
-    for duration_s in durations.into_iter().skip(1).take(DURATIONS_SHOWN) {
-        let run = plan
-            .proposals
-            .iter()
-            .find(|run| run.duration_s == duration_s);
-        screen.fact(
-            "or",
-            run.map_or_else(String::new, |run| {
-                format!(
-                    "{} from {}: {}",
-                    hours(duration_s),
-                    attitude(plan, run),
-                    outlook(run)
-                )
-            }),
-        );
+    let durations = durations(plan).into_iter();
+    for duration_s in durations.skip(1).take(DURATIONS_SHOWN) {
+        let mut runs = plan.proposals.iter();
+        if let Some(run) = runs.find(|run| run.duration_s == duration_s) {
+            let (hours, from) = (hours(duration_s), attitude(plan, run));
+            screen.fact("or", format!("{hours} from {from}: {}", outlook(run)));
+        }
     }
     screen.fact("goal", crate::prose::goal(plan).unwrap_or_default());
     if !plan.inseparable.is_empty() {
-        let classes: Vec<String> = plan.inseparable.iter().map(|ids| ids.join(" = ")).collect();
-        let classes: Vec<&str> = classes.iter().map(String::as_str).collect();
-        screen.fact(
-            "no run tells",
-            format!("{} (exact equivalents)", few(&classes, SHOWN)),
-        );
+        let classes = plan.inseparable.iter().map(|ids| ids.join(" = "));
+        let words = format!("{} (exact equivalents)", few(classes, SHOWN));
+        screen.fact("no run tells", words);
     }
     screen.fact("record", known(plan));
     let what = match plan.records.is_empty() {
@@ -123,12 +109,12 @@ fn records_with_next(plan: &PlanResult) -> String {
 /// What the records leave open.
 fn question(plan: &PlanResult) -> String {
     let sets = undecided(&plan.now).map(|set| {
-        let others: Vec<&str> = set.members[1..].iter().map(|m| &*m.effect).collect();
-        format!("{} may also be {}", set.effect, few(&others, SHOWN))
+        let others = few(set.members[1..].iter().map(|m| &m.effect), SHOWN);
+        format!("{} may also be {others}", set.effect)
     });
-    let sets: Vec<String> = sets.collect();
+    let sets = joined(sets, "; ");
     match (sets.is_empty(), plan.aim) {
-        (false, _) => sets.join("; "),
+        (false, _) => sets,
         (true, Aim::Set) => "every finding has one name".to_owned(),
         (true, Aim::Sigmas) => "no cause is in doubt: the run reduces the sigmas most".to_owned(),
     }
@@ -151,27 +137,18 @@ fn expectation(plan: &PlanResult, best: &Proposal, screen: &mut Screen) {
     );
     screen.fact("coefficients", words);
     let mut going_on = plan.going_on.iter();
-    let going_on = going_on.find(|run| run.duration_s == best.duration_s);
-    screen.fact(
-        "going on",
-        going_on.map_or_else(String::new, |run| {
-            format!("as long in the present attitude: {}", outlook(run))
-        }),
-    );
+    if let Some(run) = going_on.find(|run| run.duration_s == best.duration_s) {
+        let words = format!("as long in the present attitude: {}", outlook(run));
+        screen.fact("going on", words);
+    }
 }
 
 /// What a run gives, in a few words.
 fn outlook(run: &Proposal) -> String {
     let sets = undecided(&run.outlook).map(|set| {
-        format!(
-            "{:.2} of {} left, ",
-            set.mean_size,
-            counted(set.members.len(), "cause")
-        )
+        let causes = counted(set.members.len(), "cause");
+        format!("{:.2} of {causes} left, ", set.mean_size)
     });
-    format!(
-        "{}sigmas {:.2}",
-        sets.collect::<String>(),
-        run.outlook.sigma_ratio
-    )
+    let sets = sets.collect::<String>();
+    format!("{sets}sigmas {:.2}", run.outlook.sigma_ratio)
 }

@@ -1,10 +1,10 @@
 //! The sentences and tables of a plan, made from its result alone.
 
-use crate::result::{Aim, AttitudeOf, Outlook, PlanResult, Proposal, SetForecast};
+use crate::result::{Aim, AttitudeOf, Outlook, PlanResult, Proposal, SetForecast, SetMember};
 use gyrocal_record::printable_line;
 
 use gyrocal_document::{Column, List, Table, Words};
-use gyrocal_words::{counted, setup};
+use gyrocal_words::{joined, setup, size};
 
 /// Probability above which two causes count as distinguished.
 const DISTINGUISHED: f64 = 0.95;
@@ -49,11 +49,7 @@ pub fn prose(plan: &PlanResult) -> Vec<Words> {
 /// The records that the run is planned from, with their size.
 pub(crate) fn known(plan: &PlanResult) -> String {
     let inputs = &plan.manifest.inputs;
-    let size = format!(
-        "{} over {:.2} days",
-        counted(plan.record.rows, "row"),
-        plan.record.duration_s / 86_400.0
-    );
+    let size = size(plan.record.rows, plan.record.duration_s);
     let count = plan.records.len();
     if count == 0 {
         let path = inputs.first();
@@ -62,16 +58,15 @@ pub(crate) fn known(plan: &PlanResult) -> String {
     }
     // Each is followed by its bench file.
     let names = inputs.iter().step_by(2).take(count);
-    let names: Vec<_> = names.map(|input| printable_line(&input.path)).collect();
-    let named = match names.is_empty() {
-        true => String::new(),
-        false => format!(" ({})", names.join(", ")),
+    let named = match &*joined(names.map(|input| printable_line(&input.path)), ", ") {
+        "" => String::new(),
+        names => format!(" ({names})"),
     };
     format!("{count} records together{named}: {size}")
 }
 
 /// Durations in the order in which they were asked for.
-fn durations(plan: &PlanResult) -> Vec<f64> {
+pub(crate) fn durations(plan: &PlanResult) -> Vec<f64> {
     let mut durations: Vec<f64> = plan.proposals.iter().map(|p| p.duration_s).collect();
     durations.dedup();
     durations
@@ -89,27 +84,21 @@ fn question(plan: &PlanResult) -> String {
         false => "these records",
     };
     let sets = undecided(now).map(|set| {
-        let others: Vec<&str> = set.members[1..].iter().map(|m| &*m.effect).collect();
-        format!("{} (alternatives {})", set.effect, others.join(", "))
+        let others = joined(set.members[1..].iter().map(|m| &m.effect), ", ");
+        format!("{} (alternatives {others})", set.effect)
     });
-    let sets: Vec<String> = sets.collect();
-    let reported: Vec<&str> = now.sets.iter().map(|set| &*set.effect).collect();
+    let sets = joined(sets, "; ");
+    let reported = joined(now.sets.iter().map(|set| &set.effect), ", ");
     let ranked = match plan.aim {
         Aim::Set => "Runs are ranked by the expected size of these sets, then by the sigmas.",
         Aim::Sigmas => "Runs are ranked by the sigmas of the nine coefficients.",
     };
     if !sets.is_empty() {
-        format!(
-            "Not distinguished by {these}: {}. {ranked}",
-            sets.join("; ")
-        )
+        format!("Not distinguished by {these}: {sets}. {ranked}")
     } else if reported.is_empty() {
         format!("The diagnosis of {these} has no findings. {ranked}")
     } else {
-        format!(
-            "Findings without alternatives: {}. {ranked}",
-            reported.join(", ")
-        )
+        format!("Findings without alternatives: {reported}. {ranked}")
     }
 }
 
@@ -118,25 +107,20 @@ fn recommendation(plan: &PlanResult, best: &Proposal, first: bool) -> String {
         true => "record",
         false => "records",
     };
-    format!(
-        "{} {} from {}. Expected result of {records} and run together",
-        if first {
-            "Recommended next run:"
-        } else {
-            "Alternatively"
-        },
-        hours(best.duration_s),
-        attitude(plan, best)
-    )
+    let what = match first {
+        true => "Recommended next run:",
+        false => "Alternatively",
+    };
+    let (hours, from) = (hours(best.duration_s), attitude(plan, best));
+    format!("{what} {hours} from {from}. Expected result of {records} and run together")
 }
 
 fn set_forecast(set: &SetForecast) -> String {
-    let others = |test: &dyn Fn(f64) -> bool| -> Vec<String> {
-        set.members[1..]
-            .iter()
-            .filter(|member| test(member.told_apart))
-            .map(|member| format!("{} ({})", member.effect, percent(member.told_apart)))
-            .collect()
+    let others = |test: &dyn Fn(f64) -> bool| {
+        let those = set.members[1..].iter();
+        let those = those.filter(|member| test(member.told_apart));
+        let told = |one: &SetMember| format!("{} ({})", one.effect, percent(one.told_apart));
+        joined(those.map(told), ", ")
     };
     let lists = [
         (others(&|p| p >= DISTINGUISHED), "distinguished from"),
@@ -156,7 +140,7 @@ fn set_forecast(set: &SetForecast) -> String {
     );
     for (list, verb) in lists {
         if !list.is_empty() {
-            words.push_str(&format!("; {verb} {}", list.join(", ")));
+            words.push_str(&format!("; {verb} {list}"));
         }
     }
     words
@@ -221,38 +205,31 @@ pub fn tables(plan: &PlanResult) -> Vec<Table> {
 
 fn runs(plan: &PlanResult) -> Table {
     let sets = undecided(&plan.now).map(|set| {
-        format!(
-            "mean size of set {} (now {})",
-            set.effect,
-            set.members.len()
-        )
+        let (effect, count) = (&set.effect, set.members.len());
+        Column::numbers(&format!("mean size of set {effect} (now {count})"))
     });
-    let mut columns: Vec<Column> = ["duration", "x", "y", "z", "sigmas"]
-        .into_iter()
+    let mut columns = ["duration", "x", "y", "z", "sigmas"]
         .map(Column::numbers)
-        .collect();
-    columns.extend(sets.map(|head| Column::numbers(&head)));
-    let row = |run: &Proposal| -> Vec<String> {
+        .to_vec();
+    columns.extend(sets);
+    let row = |run: &Proposal| {
         let angles = match run.angles_deg {
             Some(angles) => angles.map(|angle| format!("{angle:.0}°")),
             None => ["present".to_owned(), String::new(), String::new()],
         };
         let sizes = undecided(&run.outlook).map(|set| format!("{:.2}", set.mean_size));
-        core::iter::once(hours(run.duration_s))
-            .chain(angles)
-            .chain([format!("{:.3}", run.outlook.sigma_ratio)])
-            .chain(sizes)
-            .collect()
+        let mut cells = vec![hours(run.duration_s)];
+        cells.extend(angles);
+        cells.push(format!("{:.3}", run.outlook.sigma_ratio));
+        cells.extend(sizes);
+        cells
     };
     let rows = durations(plan).into_iter().flat_map(|duration_s| {
         let all = plan.proposals.iter().chain(&plan.going_on);
         all.filter(move |run| run.duration_s == duration_s)
     });
-    Table::new(
-        "Runs for each duration, the best first",
-        columns,
-        rows.map(row),
-    )
+    let title = "Runs for each duration, the best first";
+    Table::new(title, columns, rows.map(row))
 }
 
 fn sigmas(now: &Outlook, later: &[(&str, &Outlook)], duration_s: f64) -> Table {
@@ -267,22 +244,16 @@ fn sigmas(now: &Outlook, later: &[(&str, &Outlook)], duration_s: f64) -> Table {
     let outlooks = core::iter::once(now).chain(later.iter().map(|(_, outlook)| *outlook));
     let values: Vec<Vec<String>> = outlooks.map(all).collect();
     let forecasts = now.coefficients.iter().chain(&now.sizes).enumerate();
-    Table::new(
-        &format!(
-            "Standard deviations now, and after {} more",
-            hours(duration_s)
-        ),
-        columns,
-        forecasts.map(|(index, forecast)| {
-            let cells = values
-                .iter()
-                .map(|sigmas| sigmas.get(index).cloned().unwrap_or_default());
-            core::iter::once(forecast.name.to_string())
-                .chain(cells)
-                .chain([forecast.unit.to_string()])
-                .collect::<Vec<_>>()
-        }),
-    )
+    let rows = forecasts.map(|(index, forecast)| {
+        let cells = values.iter().map(|sigmas| sigmas.get(index).cloned());
+        let mut row = vec![forecast.name.to_string()];
+        row.extend(cells.map(Option::unwrap_or_default));
+        row.push(forecast.unit.to_string());
+        row
+    });
+    let hours = hours(duration_s);
+    let title = format!("Standard deviations now, and after {hours} more");
+    Table::new(&title, columns, rows)
 }
 
 fn members(plan: &PlanResult, later: &[(&str, &Outlook)]) -> Table {

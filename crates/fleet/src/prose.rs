@@ -1,8 +1,8 @@
 //! The sentences and tables of what a fleet shows.
 
-use gyrocal_document::{Column, List, Screen, Standing, Table, Words};
+use gyrocal_document::{List, Screen, Standing, Table, Words};
 use gyrocal_statistics::format;
-use gyrocal_words::{counted, few};
+use gyrocal_words::{capitalised, counted, few, joined};
 
 use crate::answer::{
     FleetCoefficient, FleetResult, Group, GroupFinding, GroupKind, RecurringCause, WithInterval,
@@ -29,7 +29,7 @@ pub fn all(fleet: &FleetResult) -> Vec<Words> {
     blocks.extend(list("Units outside of the others", outliers(fleet)));
     let found = fleet.found_in_units.iter().map(|one| {
         let units = counted(one.units.len(), "unit");
-        format!("`{}` in {units}: {}", one.effect, named(&one.units))
+        format!("`{}` in {units}: {}", one.effect, few(&one.units, NAMED))
     });
     blocks.extend(list(
         "Causes that units show by themselves",
@@ -84,30 +84,19 @@ pub fn size(fleet: &FleetResult) -> String {
 /// The answer in a sentence.
 #[must_use]
 pub fn verdict(fleet: &FleetResult) -> String {
-    let recurring: Vec<String> = fleet
-        .recurring
-        .iter()
-        .map(|one| format!("`{}`", one.effect))
-        .collect();
-    let groups: Vec<String> = fleet
-        .groups
-        .iter()
-        .map(|one| group_name(&one.group))
-        .collect();
-    let causes = match recurring.len() {
+    let recurring = fleet.recurring.iter();
+    let recurring = joined(recurring.map(|one| format!("`{}`", one.effect)), ", ");
+    let causes = match fleet.recurring.len() {
         0 => "No cause recurs below what the units show by themselves".to_owned(),
-        1 => format!(
-            "One cause recurs below what the units show by themselves, {}",
-            recurring[0]
-        ),
-        count => format!(
-            "{count} causes recur below what the units show by themselves: {}",
-            recurring.join(", ")
-        ),
+        1 => format!("One cause recurs below what the units show by themselves, {recurring}"),
+        count => {
+            format!("{count} causes recur below what the units show by themselves: {recurring}")
+        }
     };
-    let groups = match groups.len() {
-        0 => "no batch and no site differs".to_owned(),
-        _ => format!("the others differ from {}", groups.join(", ")),
+    let groups = fleet.groups.iter().map(|one| group_name(&one.group));
+    let groups = match &*joined(groups, ", ") {
+        "" => "no batch and no site differs".to_owned(),
+        groups => format!("the others differ from {groups}"),
     };
     format!(
         "{causes}; {groups}. The false discovery rate of causes is {}, the probability of a false batch or \
@@ -137,9 +126,9 @@ pub fn recurring(cause: &RecurringCause) -> String {
             );
         }
     }
-    let units: Vec<String> = cause.units.iter().map(|one| one.unit.clone()).collect();
-    if !cause.is_common && !units.is_empty() {
-        text += &format!(", more likely than not in {}", named(&units));
+    if !cause.is_common && !cause.units.is_empty() {
+        let units = few(cause.units.iter().map(|one| &one.unit), NAMED);
+        text += &format!(", more likely than not in {units}");
     }
     if !cause.alternatives.is_empty() {
         text += &format!(
@@ -159,7 +148,7 @@ pub fn recurring(cause: &RecurringCause) -> String {
 pub fn group(finding: &GroupFinding) -> String {
     let mut text = format!(
         "{} ({}) differs in `{}` by {} {}, {}",
-        capital(&group_name(&finding.group)),
+        capitalised(&group_name(&finding.group)),
         counted(finding.units, "unit"),
         finding.coefficient,
         interval(&finding.offset),
@@ -184,30 +173,18 @@ fn group_name(group: &Group) -> String {
     }
 }
 
-fn capital(text: &str) -> String {
-    let mut letters = text.chars();
-    let first = letters.next().map(|first| first.to_uppercase().to_string());
-    first.unwrap_or_default() + letters.as_str()
-}
-
 fn outliers(fleet: &FleetResult) -> Vec<String> {
     let of = |one: &FleetCoefficient| {
-        let level = one.outliers.iter().map(|outlier| {
-            let estimate = format::short(outlier.estimate, 4);
-            (outlier, format!("{estimate} {}", one.unit))
-        });
-        let ageing = one.ageing_outliers.iter().map(|outlier| {
-            let estimate = format::short(outlier.estimate, 4);
-            (
-                outlier,
-                format!("a change of {estimate} {} in a year", one.unit),
-            )
-        });
-        let entries = level.chain(ageing).map(|(outlier, what)| {
+        let level = one.outliers.iter().map(|outlier| (outlier, "", ""));
+        let ageing = one.ageing_outliers.iter();
+        let ageing = ageing.map(|outlier| (outlier, "a change of ", " in a year"));
+        let entries = level.chain(ageing).map(|(outlier, before, after)| {
             format!(
-                "{}: `{}` is {what}, {} standard deviations from the mean of the others, {}",
+                "{}: `{}` is {before}{} {}{after}, {} standard deviations from the mean of the others, {}",
                 outlier.unit,
                 one.name,
+                format::short(outlier.estimate, 4),
+                one.unit,
                 format::short(outlier.t, 3),
                 format::p_value(outlier.p_value)
             )
@@ -215,12 +192,6 @@ fn outliers(fleet: &FleetResult) -> Vec<String> {
         entries.collect::<Vec<String>>()
     };
     fleet.coefficients.iter().flat_map(of).collect()
-}
-
-/// The first names of a list, and how many more there are.
-fn named(units: &[String]) -> String {
-    let units: Vec<&str> = units.iter().map(|unit| &**unit).collect();
-    few(&units, NAMED)
 }
 
 /// Estimate and interval with the digits that the interval allows.
@@ -247,11 +218,9 @@ pub fn coefficients(fleet: &FleetResult) -> Table {
             one.unit.clone(),
         ]
     });
-    Table::new(
+    Table::of(
         "Drift coefficients over the units, with 95 % intervals",
-        Column::heads(
-            "coefficient | > mean | > spread of units | > record to record | > change in a year | unit",
-        ),
+        "coefficient | > mean | > spread of units | > record to record | > change in a year | unit",
         rows,
     )
 }

@@ -17,7 +17,7 @@ use crate::panels::line;
 pub fn of_allan(manifest: &Manifest, report: &AllanReport, clock: Option<&str>) -> Part {
     let estimator = format!(
         "{}, intervals at a confidence of {}",
-        crate::words::capitalised(report.estimator),
+        gyrocal_words::capitalised(report.estimator),
         format::percent(report.confidence)
     );
     let deviations = section(

@@ -3,7 +3,7 @@
 use gyrocal_design::{AttitudeOf, PlanResult, Proposal, prose, tables};
 use gyrocal_document::{Bar, BarGroup, Bars, Item, Part, Tint};
 use gyrocal_statistics::format;
-use gyrocal_words::counted;
+use gyrocal_words::{counted, size};
 
 use crate::diagnosis::section;
 use crate::origin::{file_name, origin};
@@ -36,11 +36,7 @@ pub fn of_plan(plan: &PlanResult) -> Part {
             0 => file_name(&plan.manifest, 0, "record"),
             several => counted(several, "record"),
         },
-        size: format!(
-            "{} over {:.2} days",
-            counted(plan.record.rows, "row"),
-            plan.record.duration_s / 86_400.0
-        ),
+        size: size(plan.record.rows, plan.record.duration_s),
         first: gyrocal_design::first_screen(plan),
         sections,
         origin: origin(&plan.manifest),

@@ -2,17 +2,29 @@
 //! then others.
 
 use gyrocal_answer::Answer;
-use gyrocal_document::{Bar, BarGroup, Bars, Tint};
+use gyrocal_document::{Bar, BarGroup, Bars, Item, Section, Tint};
 use gyrocal_statistics::format;
 
+use crate::diagnosis::section as titled;
 use crate::words::listed;
 
 /// Number of effects shown that are neither reported nor alternatives.
 const OTHERS: usize = 10;
 
+/// The section of a search; `None` if nothing was searched.
+pub(crate) fn section(answer: &Answer) -> Option<Section> {
+    Some(titled(
+        "ranking",
+        "Ranking",
+        "Each effect of the catalogue was tested against the nominal model. An effect beyond the dashed \
+         threshold is significant; those that resemble a stronger one are explained by it.",
+        vec![Item::Bars(Ranked::of(answer)?.bars())],
+    ))
+}
+
 /// A search with its result.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Ranked {
+struct Ranked {
     threshold: f64,
     false_alarm_probability: f64,
     /// Effects with their statistics, the largest first.
@@ -34,7 +46,7 @@ struct Cause {
 
 impl Ranked {
     /// Of an answer; `None` if nothing was searched.
-    pub(crate) fn of(answer: &Answer) -> Option<Self> {
+    fn of(answer: &Answer) -> Option<Self> {
         let threshold = answer.threshold.filter(|threshold| *threshold > 0.0)?;
         let statistics = answer.ranking.iter();
         let causes = answer.causes().map(|finding| Cause {
@@ -124,7 +136,7 @@ impl Ranked {
     }
 
     /// As bars of a page.
-    pub(crate) fn bars(&self) -> Bars {
+    fn bars(&self) -> Bars {
         let (groups, omitted) = self.groups();
         let quantity = "score statistic, first search (chi-square, penalised for search)";
         let threshold = format!(

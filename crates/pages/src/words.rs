@@ -15,10 +15,3 @@ pub(crate) fn listed(names: &[&str]) -> String {
         [head @ .., last] => format!("{} and {last}", head.join(", ")),
     }
 }
-
-/// The first letter as a capital.
-pub(crate) fn capitalised(text: &str) -> String {
-    let mut letters = text.chars();
-    let first = letters.next().map(|first| first.to_uppercase().to_string());
-    first.unwrap_or_default() + letters.as_str()
-}

@@ -20,6 +20,21 @@ pub fn counted(count: usize, thing: &str) -> String {
     format!("{count} {thing}{plural}")
 }
 
+/// Rows and duration of a record: `2880 rows over 2.00 days`.
+#[must_use]
+pub fn size(rows: usize, duration_s: f64) -> String {
+    let days = duration_s / 86_400.0;
+    format!("{} over {days:.2} days", counted(rows, "row"))
+}
+
+/// The first letter as a capital.
+#[must_use]
+pub fn capitalised(text: &str) -> String {
+    let mut letters = text.chars();
+    let first = letters.next().map(|first| first.to_uppercase().to_string());
+    first.unwrap_or_default() + letters.as_str()
+}
+
 /// What stands in the place of a p-value that was not computed.
 pub const NO_P: &str = "p not computed for the final model";
 

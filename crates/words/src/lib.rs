@@ -23,4 +23,4 @@ pub use diagnosis::{
     time_is_temperature, typical_size, why_not_distinguished, would_distinguish,
 };
 pub use files::{command_files, few, input_files, joined, record_and_bench};
-pub use format::{NO_P, counted, tested as tested_p};
+pub use format::{NO_P, capitalised, counted, size, tested as tested_p};

@@ -5,6 +5,7 @@ mod noise;
 pub use noise::undeclared_noise;
 
 use crate::diagnosis::likelihood;
+use crate::files::joined;
 use crate::format::tested;
 use gyrocal_answer::{
     AlternativeKind, Answer, Finding, Gain, NextRun, NullDirection, NullPart, OutputError,
@@ -101,26 +102,22 @@ pub fn verdict(answer: &Answer) -> String {
         Subject::Plant(name) => name,
         _ => "The plant",
     };
-    let names: Vec<&str> = answer.findings.iter().map(|one| &*one.effect).collect();
-    let all = names.join(", ");
+    let names = &answer.findings;
+    let all = joined(names.iter().map(|one| &one.effect), ", ");
     match answer.verdict {
         Verdict::NotSettled => {
-            let mut why = Vec::new();
-            if !answer.search_complete {
-                why.push("the search ended at its budget of work");
-            }
-            if !answer.remainder.unmodelled.is_empty() {
-                why.push("it lacks something that its catalogue has no term for");
-            }
-            if answer.remainder.outputs.iter().any(is_coloured) {
-                why.push("what is left is not white noise");
-            }
-            let found = if names.is_empty() {
-                "nothing"
-            } else {
-                all.as_str()
-            };
-            let why = why.join(", and ");
+            let rest = &answer.remainder;
+            let why = [
+                (!answer.search_complete).then_some("the search ended at its budget of work"),
+                (!rest.unmodelled.is_empty())
+                    .then_some("it lacks something that its catalogue has no term for"),
+                rest.outputs
+                    .iter()
+                    .any(is_coloured)
+                    .then_some("what is left is not white noise"),
+            ];
+            let why = joined(why.into_iter().flatten(), ", and ");
+            let found = if all.is_empty() { "nothing" } else { &all };
             format!("What {plant} lacks is not settled: {why}. Found so far: {found}.")
         }
         Verdict::Unexplained if answer.has_findings() => {
@@ -164,17 +161,15 @@ pub fn finding(answer: &Answer, found: &Finding) -> String {
         tested(found.p_value),
     );
     let rivals = found.of_kind(AlternativeKind::NotExcluded);
-    let rivals: Vec<String> = rivals
-        .map(|other| format!("{} ({})", other.effect, likelihood(other)))
-        .collect();
-    text += &match (rivals.is_empty(), answer.is_settled()) {
-        (true, true) => " Its set has no other effect.".to_owned(),
-        (true, false) => " No other effect of what was compared is in its set.".to_owned(),
-        (false, _) => format!(" The cause may also be {}.", rivals.join(", ")),
+    let rivals = rivals.map(|other| format!("{} ({})", other.effect, likelihood(other)));
+    text += &match (&*joined(rivals, ", "), answer.is_settled()) {
+        ("", true) => " Its set has no other effect.".to_owned(),
+        ("", false) => " No other effect of what was compared is in its set.".to_owned(),
+        (rivals, _) => format!(" The cause may also be {rivals}."),
     };
-    let equivalents: Vec<&str> = found.equivalents().collect();
+    let equivalents = joined(found.equivalents(), ", ");
     if !equivalents.is_empty() {
-        text += &format!(" No record tells it from {}.", equivalents.join(", "));
+        text += &format!(" No record tells it from {equivalents}.");
     }
     text += &match found.none_of_these {
         Some(none) if none > LEAST_NONE => format!(
@@ -255,8 +250,7 @@ pub fn direction(one: &NullDirection) -> String {
         let size = significant(part.change.abs(), 3);
         format!("{} by {sign}{size}{unit}", part.name)
     };
-    let parts: Vec<String> = one.parts.iter().map(part).collect();
-    let parts = parts.join(", ");
+    let parts = joined(one.parts.iter().map(part), ", ");
     let held = one.held.as_ref().map_or_else(String::new, |held| {
         format!("; {held} is held at its declared value")
     });
@@ -292,14 +286,9 @@ fn over(horizon_s: Option<f64>) -> String {
 }
 
 fn record(one: &RecordResult, has: bool) -> String {
-    let errors: Vec<String> = one.open_loop.iter().map(|error| off(error, has)).collect();
-    format!(
-        "{}, {} rows: output {}. Alone: {}",
-        one.name,
-        one.record.rows,
-        errors.join(", "),
-        alone(one)
-    )
+    let errors = joined(one.open_loop.iter().map(|error| off(error, has)), ", ");
+    let (name, rows, alone) = (&one.name, one.record.rows, alone(one));
+    format!("{name}, {rows} rows: output {errors}. Alone: {alone}")
 }
 
 /// The verdict of one of several records alone, or why it has none.
@@ -350,22 +339,18 @@ pub fn later_record(answer: &Answer) -> Option<String> {
         let none = "Nothing was found, so there is no gain on the second record to be measured.";
         return Some(none.to_owned());
     };
-    let errors: Vec<String> = later
-        .open_loop
-        .iter()
-        .map(|error| {
-            let [nominal, extended] = [error.nominal, error.extended].map(rms);
-            let (output, unit) = (&error.output, &error.unit);
-            format!("output {output} is off by {extended} instead of {nominal} {unit} rms")
-        })
-        .collect();
+    let errors = later.open_loop.iter().map(|error| {
+        let [nominal, extended] = [error.nominal, error.extended].map(rms);
+        let (output, unit) = (&error.output, &error.unit);
+        format!("output {output} is off by {extended} instead of {nominal} {unit} rms")
+    });
     let nats = later.log_score_nats;
     Some(format!(
         "On the second record ({rows} rows), predicted with the parameters of the first, the gain is {nats:.1} \
          nats: {}. Simulated{}, {}.",
         judged(nats, "the second record tells"),
         over(later.horizon_s),
-        errors.join(", ")
+        joined(errors, ", ")
     ))
 }
 

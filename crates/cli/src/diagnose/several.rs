@@ -1,18 +1,17 @@
 //! `gyrocal diagnose` of several records of one platform.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use gyrocal::generated::MODEL_HASH;
-use gyrocal_diagnosis::{Gate, RecordToDiagnose, diagnose_records};
+use gyrocal_diagnosis::diagnose_records;
 use gyrocal_pages::{Part, of_diagnosis, of_result, pictures as charts};
-use gyrocal_record::{Bench, InputRole, RecordFile, printable_path};
+use gyrocal_record::InputRole;
 
 use super::{DiagnoseArguments, NotDiagnosed, finished};
 use crate::outputs::manifest_of;
 use crate::pictures::Named;
 use crate::progress::Progress;
-use crate::records::refuse_shared_rows;
-use crate::{Failure, Reply, gyro_axes, page};
+use crate::{Failure, Reply, page};
 
 /// Runs the command; `inputs` are each record with its bench file.
 pub(super) fn run(
@@ -20,39 +19,13 @@ pub(super) fn run(
     inputs: &[(InputRole, &Path)],
 ) -> Result<Reply, Failure> {
     refuse_options(arguments)?;
-    let benches: Vec<Bench> = arguments
-        .pairs()
-        .map(|(_, bench)| Bench::read(bench))
-        .collect::<Result<_, _>>()?;
-    let files: Vec<RecordFile> = arguments
-        .records
-        .iter()
-        .map(|path| arguments.map.read(path))
-        .collect::<Result<_, _>>()?;
-    let records = files.iter().map(RecordFile::record);
-    let named: Vec<_> = arguments
-        .records
-        .iter()
-        .map(PathBuf::as_path)
-        .zip(records)
-        .collect();
-    refuse_shared_rows(&named)?;
+    let (files, benches) = arguments.given().read()?;
     let options = arguments.options();
     let rows = files.iter().map(|file| file.record().len()).sum();
     tracing::info!(rows, records = files.len(), "read");
     let mut progress = Progress::waiting("diagnosing", rows);
-    let mut checked = Vec::with_capacity(files.len());
-    let kind = gyro_axes::kind(&arguments.gyro_axes);
-    let records = files.iter().map(RecordFile::record);
-    let mut axes = gyro_axes::read(&arguments.gyro_axes, records)?.into_iter();
-    for ((path, file), bench) in arguments.records.iter().zip(&files).zip(&benches) {
-        let gate = Gate::of_file(kind, file, bench, &options.calibration)?;
-        checked.push(RecordToDiagnose {
-            name: printable_path(path),
-            gate: gate.with_gyro_axes(axes.next()),
-            bench,
-        });
-    }
+    let given = arguments.given();
+    let checked = given.checked(&files, &benches, &options.calibration)?;
     let failed = |source| NotDiagnosed::new(&arguments.records[0], &benches[0], source);
     let mut found =
         diagnose_records(checked, &options, |stage| progress.at(stage)).map_err(failed)?;

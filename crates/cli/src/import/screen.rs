@@ -4,40 +4,22 @@ use gyrocal_document::{Screen, Standing};
 use gyrocal_instruments::strapdown::ImportReport;
 use gyrocal_record::shell_quoted;
 
-use super::{FAR_SIGMAS, StrapdownArguments, disturbed_s};
+use super::{StrapdownArguments, compared, disturbed_s, is_far};
 
 /// Rows, the rates that can be held against Earth rate, noise, and what to run next.
 pub(super) fn first(arguments: &StrapdownArguments, report: &ImportReport) -> Screen {
-    let pairs = [
-        (
-            "horizontal",
-            report.horizontal_rate_deg_per_h,
-            report.expected_horizontal_rate_deg_per_h,
-        ),
-        (
-            "vertical",
-            report.vertical_rate_deg_per_h,
-            report.expected_vertical_rate_deg_per_h,
-        ),
-    ];
-    let is_far =
-        |([rate, sigma], expected): ([f64; 2], f64)| (rate - expected).abs() > FAR_SIGMAS * sigma;
-    let far = pairs
-        .iter()
-        .any(|(_, rate, expected)| is_far((*rate, *expected)));
+    let mut rates = compared(report).into_iter();
+    let far = rates.any(|(_, rate, expected)| is_far(rate, expected));
     let what = format!(
         "{} rows of {} s from {} samples over {:.1} s",
         report.rows, arguments.averaging_s, report.samples, report.duration_s
     );
-    let mut screen = match far {
-        true => Screen::new(
-            Standing::Doubtful,
-            "IMPORTED, BUT FAR FROM EARTH RATE",
-            what,
-        ),
-        false => Screen::new(Standing::Good, "IMPORTED", what),
+    let (standing, verdict) = match far {
+        true => (Standing::Doubtful, "IMPORTED, BUT FAR FROM EARTH RATE"),
+        false => (Standing::Good, "IMPORTED"),
     };
-    for (name, [rate, sigma], expected) in pairs {
+    let mut screen = Screen::new(standing, verdict, what);
+    for (name, [rate, sigma], expected) in compared(report) {
         let words = format!(
             "{rate:.4} ± {sigma:.4} deg/h, Earth {expected:.4}, difference {:.4}",
             rate - expected
@@ -45,10 +27,8 @@ pub(super) fn first(arguments: &StrapdownArguments, report: &ImportReport) -> Sc
         screen.fact(&format!("{name} rate"), words);
     }
     if far {
-        screen.fact(
-            "what to do",
-            "check latitude, units and axes in the log description, and the gyros",
-        );
+        let words = "check latitude, units and axes in the log description, and the gyros";
+        screen.fact("what to do", words);
     }
     record(arguments, report, &mut screen);
     next_step(arguments, &mut screen);
@@ -87,17 +67,10 @@ fn record(arguments: &StrapdownArguments, report: &ImportReport, screen: &mut Sc
 fn next_step(arguments: &StrapdownArguments, screen: &mut Screen) {
     if let Some(bench) = &arguments.bench_out {
         let path = |path: &std::path::Path| shell_quoted(&path.to_string_lossy());
-        let axes = arguments
-            .axes_out
-            .as_ref()
-            .map_or_else(String::new, |axes| format!(" --gyro-axes {}", path(axes)));
-        screen.then(
-            format!(
-                "gyrocal calibrate {} --bench {}{axes}",
-                path(&arguments.out),
-                path(bench)
-            ),
-            "errors of the gyros",
-        );
+        let axes = arguments.axes_out.as_ref();
+        let axes = axes.map_or_else(String::new, |axes| format!(" --gyro-axes {}", path(axes)));
+        let (record, bench) = (path(&arguments.out), path(bench));
+        let command = format!("gyrocal calibrate {record} --bench {bench}{axes}");
+        screen.then(command, "errors of the gyros");
     }
 }

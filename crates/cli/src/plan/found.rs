@@ -142,7 +142,7 @@ pub(super) fn check_inputs(
     diagnosis: &Answer,
     arguments: &PlanArguments,
 ) -> Result<(), Failure> {
-    let pairs = arguments.pairs().flat_map(|(record, bench)| {
+    let pairs = arguments.given().pairs().flat_map(|(record, bench)| {
         [
             (record, "of another record"),
             (bench, "with another bench file"),

@@ -1,24 +1,21 @@
 //! What several records of one platform tell together: read from a joint diagnosis, or by one.
 
 use std::borrow::Cow;
-use std::path::Path;
 
 use gyrocal_answer::read_platform;
 use gyrocal_calibration::{Options, Run};
 use gyrocal_design::{NamedCause, fitted_to_records};
 use gyrocal_diagnosis::{
-    DiagnoseOptions, DiagnosisError, Gate, RecordToDiagnose, diagnose_together, problems_of,
+    DiagnoseOptions, DiagnosisError, RecordToDiagnose, diagnose_together, problems_of,
 };
-use gyrocal_record::{Bench, Record, RecordFile, printable_path};
+use gyrocal_record::{Bench, Record, RecordFile};
 
 use super::PlanArguments;
 use super::failed::NotPlanned;
 use super::found::{Known, check_inputs, options, refuse};
 use crate::Failure;
 use crate::diagnose::NotDiagnosed;
-use crate::gyro_axes;
 use crate::progress::Progress;
-use crate::records::refuse_shared_rows;
 
 pub(super) fn known<'a>(
     arguments: &PlanArguments,
@@ -26,13 +23,8 @@ pub(super) fn known<'a>(
     benches: &'a [Bench],
     progress: &mut Progress,
 ) -> Result<Known<'a>, Failure> {
-    let paths = arguments.records.iter();
-    let named: Vec<(&Path, &Record)> = paths
-        .zip(files)
-        .map(|(path, file)| (path.as_path(), file.record()))
-        .collect();
-    refuse_shared_rows(&named)?;
-    let checked = checked(arguments, files, benches)?;
+    let given = arguments.given();
+    let checked = given.checked(files, benches, &Options::default())?;
     let failed = |source| NotDiagnosed::new(&arguments.records[0], &benches[0], source);
     let Some(path) = &arguments.diagnosis else {
         let options = options(arguments);
@@ -74,26 +66,4 @@ pub(super) fn known<'a>(
         fitted,
         named: NamedCause::all(&diagnosis),
     })
-}
-
-/// Each record with its axes, its set-up checked.
-fn checked<'a>(
-    arguments: &PlanArguments,
-    files: &'a [RecordFile],
-    benches: &'a [Bench],
-) -> Result<Vec<RecordToDiagnose<'a>>, Failure> {
-    let kind = gyro_axes::kind(&arguments.gyro_axes);
-    let records = files.iter().map(RecordFile::record);
-    let mut axes = gyro_axes::read(&arguments.gyro_axes, records)?.into_iter();
-    let named = arguments.records.iter().zip(files).zip(benches);
-    named
-        .map(|((path, file), bench)| {
-            let gate = Gate::of_file(kind, file, bench, &Options::default())?;
-            Ok(RecordToDiagnose {
-                name: printable_path(path),
-                gate: gate.with_gyro_axes(axes.next()),
-                bench,
-            })
-        })
-        .collect()
 }

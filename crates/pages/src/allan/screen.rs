@@ -4,7 +4,7 @@ use gyrocal_document::{Screen, Standing};
 use gyrocal_instruments::{AllanReport, LeftOut};
 use gyrocal_statistics::allan::NoiseFit;
 use gyrocal_statistics::format;
-use gyrocal_words::counted;
+use gyrocal_words::{counted, joined};
 
 /// Columns that are told one by one.
 const COLUMNS_SHOWN: usize = 4;
@@ -16,21 +16,16 @@ const SAMPLES_SHOWN: usize = 3;
 pub(super) fn first(report: &AllanReport, clock: Option<&str>) -> Screen {
     let columns = &report.columns;
     let described = |noise: &Option<NoiseFit>| noise.as_ref().is_some_and(NoiseFit::is_described);
-    let good = columns
-        .iter()
-        .filter(|column| described(&column.noise))
-        .count();
+    let good = columns.iter().filter(|column| described(&column.noise));
+    let good = good.count();
     let all = columns.len();
     let parts_of = "white noise, flicker and random walks";
     let mut screen = if good == all {
         let what = format!("by {parts_of}, in all of {}", counted(all, "column"));
         Screen::new(Standing::Good, "NOISE EXPLAINED", what)
     } else {
-        let what = format!(
-            "by {parts_of}, in {} of {}",
-            all - good,
-            counted(all, "column")
-        );
+        let (few, all) = (all - good, counted(all, "column"));
+        let what = format!("by {parts_of}, in {few} of {all}");
         Screen::new(Standing::Doubtful, "NOISE NOT EXPLAINED", what)
     };
     let bad: usize = columns
@@ -48,26 +43,22 @@ pub(super) fn first(report: &AllanReport, clock: Option<&str>) -> Screen {
         }
     }
     if bad > 0 {
-        let words = match good == columns.len() {
+        let words = match good == all {
             true => format!("explained by {parts_of}"),
             false => format!("not explained by {parts_of}, in {} of {all}", all - good),
         };
         screen.fact("what is left", words);
     }
-    if columns.len() > COLUMNS_SHOWN {
-        let more = columns.len() - COLUMNS_SHOWN;
+    if all > COLUMNS_SHOWN {
+        let more = all - COLUMNS_SHOWN;
         screen.fact("and", format!("{more} more columns"));
     }
-    if good < columns.len() {
-        screen.fact(
-            "may be",
-            "vibration, jumps, a change of temperature, or too short a log",
-        );
+    if good < all {
+        let words = "vibration, jumps, a change of temperature, or too short a log";
+        screen.fact("may be", words);
     }
-    screen.fact(
-        "intervals",
-        "95 %; the flat part of a bias instability B is 0.664 B",
-    );
+    let words = "95 %; the flat part of a bias instability B is 0.664 B";
+    screen.fact("intervals", words);
     screen.fact("clock", clock.unwrap_or_default());
     screen
 }
@@ -75,14 +66,10 @@ pub(super) fn first(report: &AllanReport, clock: Option<&str>) -> Screen {
 /// The samples of a column that are left out, and what would be said with them.
 pub(super) fn bad_samples(left_out: &LeftOut, unit: &str) -> String {
     let each = left_out.samples.iter().take(SAMPLES_SHOWN).map(|one| {
-        format!(
-            "{} at {} s ({} {unit})",
-            one.sample,
-            format::short(one.time_s, 6),
-            format::short(one.value, 5)
-        )
+        let (time_s, value) = (format::short(one.time_s, 6), format::short(one.value, 5));
+        format!("{} at {time_s} s ({value} {unit})", one.sample)
     });
-    let each = each.collect::<Vec<_>>().join(", ");
+    let each = joined(each, ", ");
     let more = match left_out.count.saturating_sub(SAMPLES_SHOWN) {
         0 => String::new(),
         more => format!(" and {more} more"),
@@ -101,30 +88,18 @@ fn parts(noise: Option<&NoiseFit>, unit: &str) -> String {
     let each = noise.coefficients.iter().filter_map(|coefficient| {
         let part = coefficient.part;
         let unit = format!("{unit}{}", part.unit_suffix());
-        let short = |value| format::short(value, 3);
-        match (coefficient.estimate, coefficient.interval) {
-            (Some(estimate), Some([low, high])) if low > 0.0 => Some(format!(
-                "{} {} ({} to {}) {unit}",
-                part.description(),
-                short(estimate),
-                short(low),
-                short(high)
-            )),
-            (Some(_), Some([_, high])) => Some(format!(
-                "{} below {} {unit}",
-                part.description(),
-                short(high)
-            )),
-            _ => None,
-        }
+        let part = part.description();
+        let ends = coefficient.interval?;
+        let [low, high] = ends.map(|end| format::short(end, 3));
+        let estimate = format::short(coefficient.estimate?, 3);
+        Some(match ends[0] > 0.0 {
+            true => format!("{part} {estimate} ({low} to {high}) {unit}"),
+            false => format!("{part} below {high} {unit}"),
+        })
     });
-    let mut each: Vec<String> = each.collect();
-    if each.is_empty() {
-        each.push("no part of the noise is determined".to_owned());
+    let fit = format::p_value(noise.p_value);
+    match &*joined(each, ", ") {
+        "" => format!("no part of the noise is determined; fit {fit}"),
+        parts => format!("{parts}; fit {fit}"),
     }
-    format!(
-        "{}; fit {}",
-        each.join(", "),
-        format::p_value(noise.p_value)
-    )
 }

@@ -6,7 +6,6 @@ mod findings;
 mod gain;
 mod limits;
 pub(crate) mod open_loop;
-pub(crate) mod ranking;
 mod residuals;
 mod test_table;
 
@@ -17,7 +16,6 @@ use gyrocal_record::Bench;
 
 use crate::error::PageError;
 use crate::origin::{file_name, origin};
-use crate::ranked::Ranked;
 use open_loop::Simulated;
 
 /// The page of a diagnosis with its fits.
@@ -67,11 +65,7 @@ fn part(result: &Answer, sections: Vec<Section>) -> Part {
             0 => file_name(&result.manifest, 0, "record"),
             several => gyrocal_words::counted(several, "record"),
         },
-        size: format!(
-            "{} over {:.2} days",
-            gyrocal_words::counted(result.record.rows, "row"),
-            result.record.duration_s / 86_400.0
-        ),
+        size: gyrocal_words::size(result.record.rows, result.record.duration_s),
         first: gyrocal_words::first_screen(result),
         sections,
         origin: origin(&result.manifest),
@@ -87,7 +81,7 @@ fn found(result: &Answer) -> Vec<Section> {
 
 /// The ranking with its table.
 fn ranked(result: &Answer) -> Option<Section> {
-    let mut section = ranking::section(Ranked::of(result).as_ref())?;
+    let mut section = crate::ranked::section(result)?;
     let table = gyrocal_words::ranking(result);
     section.items.extend(table.map(Item::from));
     Some(section)

@@ -11,10 +11,9 @@ use gyrocal_record::Manifest;
 use gyrocal_statistics::format;
 use gyrocal_words::counted;
 
-use crate::diagnosis::ranking;
 use crate::error::PageError;
 use crate::origin::{file_name, origin};
-use crate::ranked::Ranked;
+use crate::ranked;
 
 /// The page of a diagnosis of a plant; `name` is that of its record.
 ///
@@ -24,7 +23,7 @@ pub fn of_plant(diagnosed: &Diagnosed, name: &str, manifest: &Manifest) -> Resul
     let answer = &diagnosed.answer;
     let mut sections: Vec<_> = over_time::sections(diagnosed).into();
     sections.extend(tables::sets(answer));
-    sections.extend(ranking::section(Ranked::of(answer).as_ref()));
+    sections.extend(ranked::section(answer));
     sections.extend(tables::parameters(answer));
     sections.extend(tables::records(answer));
     sections.extend(tables::gain(answer, Some(diagnosed)));
@@ -36,7 +35,7 @@ pub fn of_plant(diagnosed: &Diagnosed, name: &str, manifest: &Manifest) -> Resul
 /// The page of a written answer on a plant: all but the charts, for which the record is needed.
 pub(crate) fn of_answer(answer: &Answer) -> Part {
     let mut sections: Vec<Section> = tables::sets(answer).into_iter().collect();
-    sections.extend(ranking::section(Ranked::of(answer).as_ref()));
+    sections.extend(ranked::section(answer));
     sections.extend(tables::parameters(answer));
     sections.extend(tables::records(answer));
     sections.extend(tables::gain(answer, None));

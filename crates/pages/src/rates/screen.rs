@@ -63,12 +63,9 @@ pub(super) fn first(logs: &[Input], report: &RateReport) -> Screen {
         );
         screen.fact("not told", words);
     }
-    let mut undetermined: Vec<&str> = Vec::new();
-    for gyro in &report.gyros {
-        undetermined.extend(gyro.undetermined.iter().map(String::as_str));
-    }
-    if !undetermined.is_empty() {
-        let names = few(&undetermined, NAMES_SHOWN);
+    let undetermined = report.gyros.iter().flat_map(|gyro| &gyro.undetermined);
+    let names = few(undetermined, NAMES_SHOWN);
+    if !names.is_empty() {
         let way = format!("{names}: turn the unit over, a log each");
         screen.fact("undetermined", way);
     }

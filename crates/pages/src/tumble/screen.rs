@@ -3,7 +3,7 @@
 use gyrocal_document::{Screen, Standing};
 use gyrocal_instruments::multi_position::{FewPositionReport, MultiPositionReport};
 use gyrocal_statistics::format;
-use gyrocal_words::{counted, few};
+use gyrocal_words::{counted, few, joined};
 
 use super::TumbleAnswer;
 use crate::origin::named;
@@ -68,17 +68,16 @@ macro_rules! terms {
 }
 
 fn verdict(terms: &[Term<'_>]) -> Screen {
-    let what = format!(
-        "the nominal drift law lacks {}",
-        counted(terms.len(), "term")
-    );
-    let mut screen = match terms {
-        [] => Screen::new(
+    let mut screen = match terms.len() {
+        0 => Screen::new(
             Standing::Good,
             "LAW HOLDS",
             "no significant term beyond the nominal drift law",
         ),
-        _ => Screen::new(Standing::Bad, "TERMS MISSING", what),
+        count => {
+            let what = format!("the nominal drift law lacks {}", counted(count, "term"));
+            Screen::new(Standing::Bad, "TERMS MISSING", what)
+        }
     };
     for (effect, [estimate, sigma], unit, p, names) in terms.iter().take(TERMS_SHOWN) {
         let others = match &names[..] {
@@ -98,14 +97,12 @@ fn many(report: &MultiPositionReport) -> Screen {
     let mut screen = verdict(&terms!(report, |other| &*other.effect));
     for one in &report.log_biases {
         let differences = one.differences_deg_per_h.iter().zip(&one.sigmas_deg_per_h);
-        let differences: Vec<String> = differences
-            .map(|(difference, sigma)| format::with_sigma(*difference, *sigma))
-            .collect();
+        let differences = differences.map(|(one, sigma)| format::with_sigma(*one, *sigma));
         let words = format!(
             "{}.bias by {} deg/h from the first log on, {}: another turn-on, or another unit, whose logs are \
              evaluated alone",
             one.gyro,
-            differences.join(", "),
+            joined(differences, ", "),
             format::p_value(one.test.p_value)
         );
         screen.fact("logs differ", words);
@@ -127,17 +124,13 @@ fn many(report: &MultiPositionReport) -> Screen {
         let law = &gyro.extended;
         format!("{} {}", gyro.gyro, format::short(law.excess_deg_per_h, 2))
     });
-    let extended = extended.collect::<Vec<_>>().join(", ");
-    screen.fact(
-        "left over",
-        format!("scatter beyond the noise of the stops, deg/h: {extended}"),
-    );
+    let extended = joined(extended, ", ");
+    let words = format!("scatter beyond the noise of the stops, deg/h: {extended}");
+    screen.fact("left over", words);
     let controls = &report.controls;
     let [found, of] = [controls.shuffles_with_findings, controls.shuffles];
-    screen.fact(
-        "controls",
-        format!("terms found in {found} of {of} data sets with permuted stops"),
-    );
+    let words = format!("terms found in {found} of {of} data sets with permuted stops");
+    screen.fact("controls", words);
     screen
 }
 
@@ -155,25 +148,18 @@ fn few_positions(report: &FewPositionReport) -> Screen {
             let size = format::with_sigma(one.estimate, one.sigma);
             format!("{} {size} {}", one.name, one.unit)
         });
-        screen.fact(&gyro.gyro, law.collect::<Vec<_>>().join(", "));
-        let open: Vec<&str> = gyro.undetermined.iter().map(|name| &**name).collect();
-        if !open.is_empty() {
-            screen.fact("not determined", few(&open, NAMES_SHOWN));
-        }
+        screen.fact(&gyro.gyro, joined(law, ", "));
+        screen.fact("not determined", few(&gyro.undetermined, NAMES_SHOWN));
     }
     let between = report.gyros.iter().map(|gyro| {
-        let [median, most] = gyro
-            .noise
-            .scatter_deg_per_h
-            .map(|level| format::short(level, 2));
+        let levels = gyro.noise.scatter_deg_per_h;
+        let [median, most] = levels.map(|level| format::short(level, 2));
         format!("{} {median} (at most {most})", gyro.gyro)
     });
-    let between = between.collect::<Vec<_>>().join(", ");
     if report.tells_noise() {
-        screen.fact(
-            "between stops",
-            format!("scatter beyond the noise of a stop, deg/h: {between}"),
-        );
+        let between = joined(between, ", ");
+        let words = format!("scatter beyond the noise of a stop, deg/h: {between}");
+        screen.fact("between stops", words);
     } else {
         let left = counted(report.freedom_of_noise, "degree");
         screen.fact(

@@ -3,7 +3,7 @@
 use gyrocal_record::printable_line;
 
 use crate::files::{few, joined};
-use crate::format::counted;
+use crate::format::{counted, size};
 use gyrocal_answer::{Answer, SetupProblem};
 use gyrocal_document::{List, Words};
 
@@ -12,8 +12,7 @@ const RECORDS_SHOWN: usize = 4;
 
 /// The record and its size.
 pub(super) fn record(result: &Answer) -> String {
-    let (rows, days) = (result.record.rows, result.record.duration_s / 86_400.0);
-    let size = format!("{} over {days:.2} days", counted(rows, "row"));
+    let size = size(result.record.rows, result.record.duration_s);
     if result.records.is_empty() {
         let path = result.manifest.inputs.first();
         let name = path.map_or("record".into(), |input| printable_line(&input.path));
