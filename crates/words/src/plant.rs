@@ -106,17 +106,17 @@ pub fn verdict(answer: &Answer) -> String {
     let all = joined(names.iter().map(|one| &one.effect), ", ");
     match answer.verdict {
         Verdict::NotSettled => {
-            let rest = &answer.remainder;
-            let why = [
-                (!answer.search_complete).then_some("the search ended at its budget of work"),
-                (!rest.unmodelled.is_empty())
-                    .then_some("it lacks something that its catalogue has no term for"),
-                rest.outputs
-                    .iter()
-                    .any(is_coloured)
-                    .then_some("what is left is not white noise"),
-            ];
-            let why = joined(why.into_iter().flatten(), ", and ");
+            let mut why = Vec::new();
+            if !answer.search_complete {
+                why.push("the search ended at its budget of work");
+            }
+            if !answer.remainder.unmodelled.is_empty() {
+                why.push("it lacks something that its catalogue has no term for");
+            }
+            if answer.remainder.outputs.iter().any(is_coloured) {
+                why.push("what is left is not white noise");
+            }
+            let why = why.join(", and ");
             let found = if all.is_empty() { "nothing" } else { &all };
             format!("What {plant} lacks is not settled: {why}. Found so far: {found}.")
         }

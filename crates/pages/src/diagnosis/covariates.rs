@@ -153,7 +153,7 @@ fn panel(name: &str, (covariate, unit): (&str, &str), bins: &[BinMean]) -> Panel
             "mean of a bin",
             Tint::Nominal,
             LineKind::Points,
-            edge(0.0),
+            bins.iter().map(|bin| bin.mean).collect(),
         )],
         levels: vec![Level::zero()],
         no_gaps: true,
