@@ -5,7 +5,6 @@ use gyrocal_answer::Answer;
 use gyrocal_document::{Bar, BarGroup, Bars, Item, Section, Tint};
 use gyrocal_statistics::format;
 
-use crate::diagnosis::section as titled;
 use crate::words::listed;
 
 /// Number of effects shown that are neither reported nor alternatives.
@@ -13,13 +12,14 @@ const OTHERS: usize = 10;
 
 /// The section of a search; `None` if nothing was searched.
 pub(crate) fn section(answer: &Answer) -> Option<Section> {
-    Some(titled(
-        "ranking",
-        "Ranking",
-        "Each effect of the catalogue was tested against the nominal model. An effect beyond the dashed \
-         threshold is significant; those that resemble a stronger one are explained by it.",
-        vec![Item::Bars(Ranked::of(answer)?.bars())],
-    ))
+    let lead = "Each effect of the catalogue was tested against the nominal model. An effect beyond the dashed \
+                threshold is significant; those that resemble a stronger one are explained by it.";
+    Some(Section {
+        id: "ranking".to_owned(),
+        title: "Ranking".to_owned(),
+        lead: lead.to_owned(),
+        items: vec![Item::Bars(Ranked::of(answer)?.bars())],
+    })
 }
 
 /// A search with its result.
