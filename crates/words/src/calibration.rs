@@ -5,8 +5,8 @@ mod tables;
 
 use gyrocal_document::{List, Words};
 use gyrocal_record::{
-    AXES, AzimuthReport, CalibrationMethod, CalibrationReport, Coefficient, NoiseDifference,
-    NoiseEstimate, NoiseRatio, RecordReport, RunReport, SiteReport, printable_line,
+    AXES, AzimuthReport, CalibrationMethod, CalibrationReport, NoiseDifference, NoiseEstimate,
+    NoiseRatio, RecordReport, RunReport, SiteReport, printable_line,
 };
 use gyrocal_statistics::format;
 
@@ -201,7 +201,8 @@ fn noise_differences(noise: &NoiseEstimate) -> String {
     match &*joined(different, ", ") {
         "" => "All noise levels agree with the declared ones.".to_owned(),
         named => format!(
-            "Noise levels other than declared: {named}. By chance one of six intervals excludes 1 in every fourth record."
+            "Noise levels other than declared: {named}. By chance one of six intervals excludes 1 in every fourth \
+             record."
         ),
     }
 }
@@ -252,8 +253,9 @@ fn exact_latitude(report: &CalibrationReport, latitude: &SiteReport) -> String {
         .filter_map(|place| biases.get(*place));
     let mean = of_g.map(|[bias, _]| bias).sum::<f64>() / 3.0;
     let told = tables::largest_bias(report, latitude);
-    let told = told.map_or_else(String::new, |(one, both)| {
-        let ([bias, in_sigmas], Coefficient { name, unit, .. }) = (both.map(f64::abs), one);
+    let told = told.map_or_else(String::new, |(one, [bias, in_sigmas])| {
+        let (name, unit) = (&one.name, &one.unit);
+        let (bias, in_sigmas) = (bias.abs(), in_sigmas.abs());
         format!(" and {name} by {bias:.1e} {unit} ({in_sigmas:.2} sigma)")
     });
     format!(
