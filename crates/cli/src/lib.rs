@@ -136,6 +136,8 @@ fn refused(error: &clap::Error) -> u8 {
 
 fn start(how: &Shown) {
     how.apply();
+    // A command meets a path once: one that is read twice is the same input.
+    gyrocal_record::keep_streams();
     start_logging(how.verbose);
     show_errors_plainly();
 }

@@ -1,10 +1,8 @@
-//! Columns of a file of binary records, read record by record.
+//! Columns of a file of binary records.
 
-use std::fs::File;
-use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
 
-use gyrocal_record::Error;
+use gyrocal_record::read_content;
 
 use crate::error::{InstrumentError, Unfit};
 use crate::file_format::{Binary, Only};
@@ -13,7 +11,7 @@ use crate::file_format::{Binary, Only};
 ///
 /// # Errors
 ///
-/// [`Error::Unreadable`]; [`Unfit::Binary`] for a column that no field has, for a file that ends within a
+/// [`gyrocal_record::Error::Unreadable`]; [`Unfit::Binary`] for a column that no field has, for a file that ends within a
 /// record, and for a number that is not finite.
 pub(crate) fn read_binary(
     path: &Path,
@@ -21,10 +19,6 @@ pub(crate) fn read_binary(
     only: Option<&Only>,
     names: &[&str],
 ) -> Result<Vec<Vec<f64>>, InstrumentError> {
-    let unreadable = |reason| Error::Unreadable {
-        path: path.to_owned(),
-        reason,
-    };
     let places = names
         .iter()
         .map(|name| place(format, name))
@@ -39,25 +33,22 @@ pub(crate) fn read_binary(
         starts.push(length);
         length += field.kind.bytes();
     }
-    let file = File::open(path).map_err(unreadable)?;
-    let bytes = file.metadata().map_err(unreadable)?.len();
-    let left = bytes.saturating_sub(format.skip_bytes as u64);
-    if length == 0 || left % length as u64 != 0 || left == 0 {
+    let bytes = read_content(path)?;
+    let records = bytes.get(format.skip_bytes..).unwrap_or_default();
+    if length == 0 || records.is_empty() || !records.len().is_multiple_of(length) {
         return Err(unfit(
-            format!("{left} bytes after the first {}", format.skip_bytes),
+            format!(
+                "{} bytes after the first {}",
+                records.len(),
+                format.skip_bytes
+            ),
             format!("whole records of {length} bytes, as `fields` say"),
             "check the types of the fields and `skip_bytes`; if the logger was cut off, cut the last \
              record from the file",
         ));
     }
-    let mut reader = BufReader::new(file);
-    reader
-        .seek(SeekFrom::Start(format.skip_bytes as u64))
-        .map_err(unreadable)?;
-    let mut record = vec![0; length];
     let mut values = vec![Vec::new(); names.len()];
-    for index in 0..left / length as u64 {
-        reader.read_exact(&mut record).map_err(unreadable)?;
+    for (index, record) in records.chunks_exact(length).enumerate() {
         let of = |place: usize| {
             let kind = format.fields[place].kind;
             kind.number(&record[starts[place]..], format.byte_order)

@@ -11,7 +11,7 @@ use std::io::Read;
 use std::path::Path;
 
 use flate2::read::ZlibDecoder;
-use gyrocal_record::{Error, open_content};
+use gyrocal_record::read_content;
 
 use crate::cell::{Cell, TakeCells, no_column, unfit};
 use crate::error::InstrumentError;
@@ -92,13 +92,7 @@ pub(crate) fn read(
     names: &[&str],
     take: &mut TakeCells<'_>,
 ) -> Result<(), InstrumentError> {
-    let mut bytes = Vec::new();
-    open_content(path)?
-        .read_to_end(&mut bytes)
-        .map_err(|reason| Error::Unreadable {
-            path: path.to_owned(),
-            reason,
-        })?;
+    let bytes = read_content(path)?;
     let Some(order) = byte_order(&bytes) else {
         return Err(unfit(
             "a MAT file of version 7.3, which is HDF5",

@@ -1,9 +1,9 @@
 //! Columns of files of Parquet.
 
-use std::fs::File;
 use std::path::Path;
 
-use gyrocal_record::Error;
+use bytes::Bytes;
+use gyrocal_record::read_content;
 use parquet::basic::{LogicalType, TimeUnit};
 use parquet::errors::ParquetError;
 use parquet::file::reader::{FileReader, SerializedFileReader};
@@ -13,7 +13,8 @@ use parquet::schema::types::Type;
 use crate::cell::{Cell, TakeCells, no_column, unfit};
 use crate::error::InstrumentError;
 
-/// Hands the cells of the columns `names` of each row to `take`; a group of its rows is in memory at a time.
+/// Hands the cells of the columns `names` of each row to `take`; the file is in memory, of its rows a group at a
+/// time.
 pub(crate) fn read(
     path: &Path,
     names: &[&str],
@@ -27,7 +28,7 @@ pub(crate) fn read(
             "copy the file again, or write it without zstd",
         )
     };
-    let reader = SerializedFileReader::new(open(path)?).map_err(damaged)?;
+    let reader = SerializedFileReader::new(Bytes::from(read_content(path)?)).map_err(damaged)?;
     let schema = reader.metadata().file_metadata().schema();
     let projection = projection(schema, names)?;
     let nanoseconds: Vec<&str> = projection
@@ -67,13 +68,6 @@ pub(crate) fn read(
         take(&cells)?;
     }
     Ok(())
-}
-
-fn open(path: &Path) -> Result<File, Error> {
-    File::open(path).map_err(|reason| Error::Unreadable {
-        path: path.to_owned(),
-        reason,
-    })
 }
 
 /// The schema with the columns `names` alone.

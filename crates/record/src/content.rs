@@ -1,11 +1,14 @@
 //! The content of input files, decompressed.
 
+use std::collections::BTreeMap;
 use std::fs::File;
-use std::io::{self, BufRead, BufReader, Read};
-use std::path::Path;
+use std::io::{self, BufRead, BufReader, Cursor, Read};
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use flate2::bufread::MultiGzDecoder;
 use ruzstd::decoding::StreamingDecoder;
+use sha2::{Digest, Sha256};
 
 use crate::error::Error;
 
@@ -13,18 +16,45 @@ use crate::error::Error;
 const GZIP: &[u8] = &[0x1f, 0x8b];
 const ZSTANDARD: &[u8] = &[0x28, 0xb5, 0x2f, 0xfd];
 
+/// What this process knows of the files that it has opened.
+static OPENED: Mutex<Opened> = Mutex::new(Opened {
+    keeps_streams: false,
+    streams: BTreeMap::new(),
+    digests: BTreeMap::new(),
+});
+
+struct Opened {
+    /// Whether streams are kept.
+    keeps_streams: bool,
+    /// What came through each stream.
+    streams: BTreeMap<PathBuf, Arc<[u8]>>,
+    /// SHA-256 of each file that was read to its end.
+    digests: BTreeMap<PathBuf, String>,
+}
+
+/// From now on a stream (a pipe, the standard input) that is opened as an input file is read once and kept, so
+/// that it can be opened again under its path. A process that meets each path once, as a command does, may
+/// want this; else a stream is refused.
+pub fn keep_streams() {
+    opened().keeps_streams = true;
+}
+
 /// Opens an input file for reading from its beginning. One that begins as gzip or Zstandard does is
 /// decompressed while it is read, whatever its name is.
 ///
 /// # Errors
 ///
-/// [`Error::Unreadable`].
+/// [`Error::Unreadable`]; of a stream too, unless [`keep_streams`] was called.
 pub fn open_content(path: &Path) -> Result<Box<dyn BufRead>, Error> {
     open(path).map_err(|reason| unreadable(path, reason))
 }
 
 /// The whole content of an input file, decompressed.
-pub(crate) fn read_content(path: &Path) -> Result<Vec<u8>, Error> {
+///
+/// # Errors
+///
+/// As [`open_content`].
+pub fn read_content(path: &Path) -> Result<Vec<u8>, Error> {
     let mut bytes = Vec::new();
     open_content(path)?
         .read_to_end(&mut bytes)
@@ -32,8 +62,20 @@ pub(crate) fn read_content(path: &Path) -> Result<Vec<u8>, Error> {
     Ok(bytes)
 }
 
+/// SHA-256 of a file in hexadecimal: of the bytes that were read last, if it was read to its end since this was
+/// asked, else of those that it has now.
+pub(crate) fn digest_of(path: &Path) -> Result<String, Error> {
+    let known = opened().digests.remove(path);
+    if let Some(digest) = known {
+        return Ok(digest);
+    }
+    let read = || io::copy(&mut raw(path)?, &mut io::sink());
+    read().map_err(|reason| unreadable(path, reason))?;
+    Ok(opened().digests.remove(path).unwrap_or_default())
+}
+
 fn open(path: &Path) -> io::Result<Box<dyn BufRead>> {
-    let mut file = BufReader::new(File::open(path)?);
+    let mut file = BufReader::new(raw(path)?);
     let first = file.fill_buf()?;
     if first.starts_with(GZIP) {
         return Ok(Box::new(BufReader::new(MultiGzDecoder::new(file))));
@@ -43,6 +85,68 @@ fn open(path: &Path) -> io::Result<Box<dyn BufRead>> {
         return Ok(Box::new(BufReader::new(decoder)));
     }
     Ok(Box::new(file))
+}
+
+/// Opens a file as it is stored.
+fn raw(path: &Path) -> io::Result<Hashed> {
+    opened().digests.remove(path);
+    let source: Box<dyn Read> = match std::fs::metadata(path)?.is_file() {
+        true => Box::new(File::open(path)?),
+        false => Box::new(Cursor::new(stream(path)?)),
+    };
+    Ok(Hashed {
+        path: path.to_owned(),
+        source,
+        digest: Some(Sha256::new()),
+    })
+}
+
+/// All that comes through a stream.
+fn stream(path: &Path) -> io::Result<Arc<[u8]>> {
+    let mut opened = opened();
+    if let Some(kept) = opened.streams.get(path) {
+        return Ok(kept.clone());
+    }
+    if !opened.keeps_streams && !path.is_dir() {
+        return Err(io::Error::other(
+            "it is a stream, which can be read once only: write it to a file",
+        ));
+    }
+    let mut bytes = Vec::new();
+    File::open(path)?.read_to_end(&mut bytes)?;
+    let bytes: Arc<[u8]> = bytes.into();
+    opened.streams.insert(path.to_owned(), bytes.clone());
+    Ok(bytes)
+}
+
+fn opened() -> MutexGuard<'static, Opened> {
+    OPENED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// A file that is hashed while it is read.
+struct Hashed {
+    path: PathBuf,
+    source: Box<dyn Read>,
+    /// `None` after its end.
+    digest: Option<Sha256>,
+}
+
+impl Read for Hashed {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let count = self.source.read(buffer)?;
+        if let Some(digest) = &mut self.digest {
+            digest.update(&buffer[..count]);
+        }
+        if count == 0
+            && !buffer.is_empty()
+            && let Some(digest) = self.digest.take()
+        {
+            let digest = digest.finalize();
+            let digest = digest.iter().map(|byte| format!("{byte:02x}")).collect();
+            opened().digests.insert(self.path.clone(), digest);
+        }
+        Ok(count)
+    }
 }
 
 fn unreadable(path: &Path, reason: io::Error) -> Error {
@@ -77,5 +181,41 @@ mod tests {
         std::fs::write(&path, [0x1f, 0x8b, 8, 0, 0, 0]).unwrap();
         let refused = read_content(&path);
         assert!(matches!(refused, Err(Error::Unreadable { .. })));
+    }
+
+    #[test]
+    fn the_hash_is_of_the_bytes_that_were_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("log.csv");
+        std::fs::write(&path, "abc").unwrap();
+        read_content(&path).unwrap();
+        std::fs::write(&path, "abcd").unwrap();
+        // The example of FIPS 180-4, of `abc`.
+        let expected = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
+        assert_eq!(digest_of(&path).unwrap(), expected);
+        assert_ne!(digest_of(&path).unwrap(), expected);
+    }
+
+    #[test]
+    fn a_file_that_was_read_in_part_is_hashed_whole() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("log.csv");
+        std::fs::write(&path, "a".repeat(20_000)).unwrap();
+        let whole = digest_of(&path).unwrap();
+        open_content(&path).unwrap().fill_buf().unwrap();
+        assert_eq!(digest_of(&path).unwrap(), whole);
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn a_stream_is_refused_unless_it_is_kept() {
+        let refused = read_content(Path::new("/dev/null")).unwrap_err();
+        let Error::Unreadable { reason, .. } = refused else {
+            panic!("{refused}");
+        };
+        assert!(
+            reason.to_string().contains("write it to a file"),
+            "{reason}"
+        );
     }
 }

@@ -88,7 +88,7 @@ mod white_noise;
 
 pub use bench::{Bench, Prior};
 pub use bound::Bound;
-pub use content::open_content;
+pub use content::{keep_streams, open_content, read_content};
 pub use document::Document;
 pub use error::{Error, InputError, InputErrorKind};
 pub use extension_report::{ExtensionReport, LeftOut};

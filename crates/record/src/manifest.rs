@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
 
+use crate::content::digest_of;
 use crate::error::Error;
 
 /// Program, inputs and command line of a result.
@@ -62,20 +62,15 @@ pub enum InputRole {
 }
 
 impl Input {
-    /// Hashes a file.
+    /// A file by its hash, of the bytes that this process read last.
     ///
     /// # Errors
     ///
     /// [`Error::Unreadable`] if it cannot be read.
     pub fn of(path: &Path) -> Result<Self, Error> {
-        let bytes = std::fs::read(path).map_err(|reason| Error::Unreadable {
-            path: path.to_owned(),
-            reason,
-        })?;
-        let digest = Sha256::digest(&bytes);
         Ok(Self {
             path: path.display().to_string(),
-            sha256: digest.iter().map(|byte| format!("{byte:02x}")).collect(),
+            sha256: digest_of(path)?,
             role: None,
         })
     }

@@ -68,6 +68,34 @@ fn a_mapped_record_has_the_coefficients_of_the_record() {
 }
 
 #[test]
+#[cfg(target_os = "linux")]
+fn a_pipe_is_read_once_and_whole() {
+    let folder = Folder::new();
+    folder.put_example("three_days.csv");
+    folder.put("b.toml", example("three_days.bench.toml"));
+    let of = |record: &str, table: &str| {
+        let ends = [
+            "--bench",
+            "b.toml",
+            "--json",
+            "r.json",
+            "--coefficients",
+            table,
+        ];
+        let all = [&["calibrate", record][..], &ends].concat();
+        let output = folder.run_with_stdin(&all, "three_days.csv");
+        assert!(output.status.success(), "{output:?}");
+        let json: serde_json::Value = serde_json::from_str(&folder.text("r.json")).unwrap();
+        let hash = json["manifest"]["inputs"][0]["sha256"].clone();
+        (folder.text(table), hash)
+    };
+    assert_eq!(
+        of("/dev/stdin", "pipe.csv"),
+        of("three_days.csv", "file.csv")
+    );
+}
+
+#[test]
 fn a_record_without_its_map_is_refused_with_one() {
     let folder = folder();
     let errors = folder.fail(&["diagnose", "l.csv", "--bench", "b.toml"]);

@@ -101,6 +101,17 @@ impl Folder {
             .unwrap()
     }
 
+    /// Runs a command with a file in a pipe to its standard input.
+    pub(crate) fn run_with_stdin(&self, arguments: &[&str], name: &str) -> Output {
+        Command::cargo_bin("gyrocal")
+            .unwrap()
+            .current_dir(self.folder.path())
+            .args(arguments)
+            .write_stdin(self.text(name))
+            .output()
+            .unwrap()
+    }
+
     /// Runs a command as on a terminal of 80 columns.
     pub(crate) fn run_on_a_terminal(&self, arguments: &[&str]) -> Output {
         Command::cargo_bin("gyrocal")
