@@ -10,6 +10,11 @@ const DESCRIPTION: &str = "[time]\ncolumn = \"t\"\n[gyro]\ncolumns = [\"gx\", \"
 
 /// A log of 2000 samples at 10 Hz with a bias of 3 deg/s of gyro x.
 fn log(temperature: f64, gyro_z: impl Fn(usize, f64) -> f64) -> String {
+    biased_log(3.0, temperature, gyro_z)
+}
+
+/// The same with another bias of gyro x \[deg/s\].
+fn biased_log(bias_x: f64, temperature: f64, gyro_z: impl Fn(usize, f64) -> f64) -> String {
     let mut state = 3_u64;
     let mut noise = || {
         state = state
@@ -27,7 +32,7 @@ fn log(temperature: f64, gyro_z: impl Fn(usize, f64) -> f64) -> String {
             text,
             "{:.1},{:.6},{y:.6},{z:.6},{:.6},{:.6},{:.6},{temperature:.4}",
             0.1 * sample as f64,
-            3.0 + x,
+            bias_x + x,
             force[0],
             force[1],
             force[2],
@@ -102,4 +107,16 @@ fn a_saturated_gyro_is_told_with_its_line() {
     let errors = folder(log(25.0, at_end)).fail(&ARGUMENTS);
     assert!(errors.contains("log.csv:702"), "{errors}");
     assert!(errors.contains("60 samples of `gz`"), "{errors}");
+}
+
+#[test]
+fn signs_of_the_wrong_way_round_are_told() {
+    let vertical_deg_per_s = 15.041_07 * 48.0_f64.to_radians().sin() / 3600.0;
+    // A bias of degrees per second and an error of the level would hide the Earth.
+    let right =
+        folder(biased_log(0.0, 25.0, |_, z| 0.2 * z + vertical_deg_per_s)).succeed(&ARGUMENTS);
+    assert!(right.starts_with("RATES  "), "{right}");
+    let wrong =
+        folder(biased_log(0.0, 25.0, |_, z| 0.2 * z - vertical_deg_per_s)).succeed(&ARGUMENTS);
+    assert!(wrong.starts_with("CHECK SIGNS  "), "{wrong}");
 }

@@ -51,7 +51,8 @@ impl Blocks {
                 })
                 .collect()
         };
-        let force = means(&|sample| Vector3::from(log.accel[sample]));
+        let force = log.force()?;
+        let force = means(&|sample| Vector3::from(force[sample]));
         let mean_up = force.iter().sum::<Vector3<f64>>().normalize();
         let up: Vec<Vector3<f64>> = force.iter().map(|force| force.normalize()).collect();
         refuse_turned(&up, &mean_up)?;

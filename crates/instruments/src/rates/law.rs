@@ -20,8 +20,17 @@ const REFITTED: usize = 3;
 /// Half the play of a hysteresis over the range of temperature, for which it is sought: each half as large again.
 const HALF_PLAYS: [f64; 9] = [0.02, 0.03, 0.045, 0.065, 0.1, 0.15, 0.21, 0.3, 0.42];
 
+/// Halvings of the ratio of two of them in which the play is sought.
+const PLAY_HALVINGS: usize = 4;
+
 /// Halvings of a quarter of a block in which the instant of a step is sought.
 const HALVINGS: usize = 6;
+
+/// Blocks to either side in which the instant of a step is sought again, once other effects are in the law; the most
+/// rounds of that, and the gain of twice the log-likelihood below which a shape stays.
+const NEAR: f64 = 2.0;
+const ROUNDS: usize = 4;
+const LEAST_MOVE: f64 = 0.05;
 
 /// Largest loss of log-likelihood of an alternative to an effect, the 95 % limit of one parameter.
 const ALTERNATIVE_NATS: f64 = 1.92;
@@ -61,7 +70,7 @@ impl Data<'_> {
         while found.len() < MOST_EFFECTS {
             let here = self.fit(&terms, start, false)?;
             start = here.variances;
-            let ranked = self.ranked(&terms, &here);
+            let ranked = self.ranked(&terms, here.variances);
             let refitted = ranked.iter().take(REFITTED).filter_map(|term| {
                 let fit = self.with(&terms, *term, start)?;
                 Some((*term, fit.twice_ln_likelihood - here.twice_ln_likelihood))
@@ -87,6 +96,7 @@ impl Data<'_> {
                 alternatives: near.map(|(term, _)| *term).collect(),
             });
             terms.push(term);
+            self.settle(&mut terms, &mut found, start)?;
         }
         let fit = self.fit(&terms, start, true)?;
         let degrees_of_freedom =
@@ -149,44 +159,20 @@ impl Data<'_> {
         }
     }
 
-    /// Candidates by their significance with the noise of a fit, of the steps the most significant one.
-    fn ranked(&self, terms: &[RateTerm], fit: &Fit) -> Vec<RateTerm> {
-        let Some(columns) = self.columns(terms) else {
+    /// Candidates by their significance with the noise of a fit, of each effect the most significant shape.
+    fn ranked(&self, terms: &[RateTerm], variances: Variances) -> Vec<RateTerm> {
+        let Some(scores) = Scores::of(self, terms, variances) else {
             return Vec::new();
         };
-        let Some((_, inverse)) = self.noise.solve(&columns, &self.rates, fit.variances) else {
-            return Vec::new();
-        };
-        let left = &inverse * (&self.rates - &columns * &fit.estimates);
-        let across = &inverse * &columns;
-        let score = |term: RateTerm| {
-            let mut more = terms.to_vec();
-            more.push(term);
-            self.columns(&more).filter(are_independent)?;
-            let column = term.column(self.gyro, self.logs)?;
-            let shared = across.transpose() * &column;
-            let variance =
-                column.dot(&(&inverse * &column)) - shared.dot(&(&fit.covariance * &shared));
-            (variance > 0.0).then(|| left.dot(&column).powi(2) / variance)
-        };
-        let steps = self.logs.iter().enumerate().flat_map(|(log, blocks)| {
-            let ends = blocks.time_s.windows(2).skip(1);
-            let quarters = |pair: &[f64]| {
-                let [from, to] = [pair[0], pair[1]];
-                [0.5, 0.75, 1.0, 1.25].map(|share| from + share * (to - from))
-            };
-            let times = ends.flat_map(quarters);
-            times.map(move |time_s| RateTerm::Step { log, time_s })
-        });
-        let scored = |term: RateTerm| Some((term, score(term)?));
-        let step = steps.filter_map(scored).max_by(|a, b| a.1.total_cmp(&b.1));
-        let step = step.map(|best| self.refined(best, &scored));
+        let logs = self.logs.iter().enumerate();
+        let steps =
+            logs.flat_map(|(log, blocks)| quarters(log, blocks, f64::NEG_INFINITY, f64::INFINITY));
         let is_new = |term: &RateTerm| !terms.iter().any(|one| one.is_of_kind(*term));
         let candidates = self.candidates().into_iter().filter(is_new);
-        let mut ranked: Vec<(RateTerm, f64)> = candidates.filter_map(scored).collect();
-        ranked.extend(step);
+        let mut ranked: Vec<(RateTerm, f64)> =
+            candidates.filter_map(|term| scores.scored(term)).collect();
+        ranked.extend(scores.best_step(steps));
         ranked.sort_by(|a, b| b.1.total_cmp(&a.1));
-        // Of each effect the best shape.
         let mut best: Vec<RateTerm> = Vec::new();
         for (term, _) in ranked {
             if !best.iter().any(|one| one.is_of_kind(term)) {
@@ -196,31 +182,38 @@ impl Data<'_> {
         best
     }
 
-    /// A step at the instant of the largest score near it.
-    fn refined(
-        &self,
-        mut best: (RateTerm, f64),
-        scored: &dyn Fn(RateTerm) -> Option<(RateTerm, f64)>,
-    ) -> (RateTerm, f64) {
-        let RateTerm::Step { log, time_s } = best.0 else {
-            return best;
-        };
-        let (mut time_s, mut width_s) = (time_s, 0.125 * self.logs[log].block_s);
-        for _ in 0..HALVINGS {
-            for side in [-width_s, width_s] {
-                let time_s = time_s + side;
-                let other = scored(RateTerm::Step { log, time_s });
-                best = other.filter(|other| other.1 > best.1).unwrap_or(best);
+    /// Gives each effect of a law the shape that is best beside the others: one that was found first had their
+    /// changes in its noise.
+    fn settle(&self, terms: &mut [RateTerm], found: &mut [Found], start: Variances) -> Option<()> {
+        for _ in 0..ROUNDS {
+            let variances = self.fit(terms, start, false)?.variances;
+            let mut has_moved = false;
+            for one in &mut *found {
+                let own = terms.iter().position(|term| *term == one.term)?;
+                let mut others = terms.to_vec();
+                others.remove(own);
+                let scores = Scores::of(self, &others, variances)?;
+                let best = match one.term {
+                    RateTerm::Step { log, time_s } => {
+                        let blocks = &self.logs[log];
+                        let [from_s, to_s] =
+                            [-NEAR, NEAR].map(|near| time_s + near * blocks.block_s);
+                        scores.best_step(quarters(log, blocks, from_s, to_s))
+                    }
+                    RateTerm::Hysteresis(_) => scores.best_hysteresis(),
+                    _ => None,
+                };
+                let (_, before) = scores.scored(one.term)?;
+                if let Some((term, _)) = best.filter(|(_, score)| *score > before + LEAST_MOVE) {
+                    (one.term, terms[own]) = (term, term);
+                    has_moved = true;
+                }
             }
-            if let RateTerm::Step {
-                time_s: found_s, ..
-            } = best.0
-            {
-                time_s = found_s;
+            if !has_moved {
+                break;
             }
-            width_s *= 0.5;
         }
-        best
+        Some(())
     }
 
     fn with(&self, terms: &[RateTerm], term: RateTerm, start: Variances) -> Option<Fit> {
@@ -241,6 +234,89 @@ impl Data<'_> {
             .collect();
         Some(DMatrix::from_columns(&columns?))
     }
+}
+
+/// Scores of terms beside a law, in given noise.
+struct Scores<'a> {
+    data: &'a Data<'a>,
+    terms: &'a [RateTerm],
+    covariance: DMatrix<f64>,
+    inverse: DMatrix<f64>,
+    /// Residuals over the covariance of the noise, and the columns of the law over it.
+    left: DVector<f64>,
+    across: DMatrix<f64>,
+}
+
+impl<'a> Scores<'a> {
+    fn of(data: &'a Data<'a>, terms: &'a [RateTerm], variances: Variances) -> Option<Self> {
+        let columns = data.columns(terms)?;
+        let (fit, inverse) = data.noise.solve(&columns, &data.rates, variances)?;
+        Some(Self {
+            data,
+            terms,
+            left: &inverse * (&data.rates - &columns * &fit.estimates),
+            across: &inverse * &columns,
+            covariance: fit.covariance,
+            inverse,
+        })
+    }
+
+    /// A term with its score, twice the log-likelihood that it gains; `None` if the law has it already.
+    fn scored(&self, term: RateTerm) -> Option<(RateTerm, f64)> {
+        let mut more = self.terms.to_vec();
+        more.push(term);
+        self.data.columns(&more).filter(are_independent)?;
+        let column = term.column(self.data.gyro, self.data.logs)?;
+        let shared = self.across.tr_mul(&column);
+        let variance =
+            column.dot(&(&self.inverse * &column)) - shared.dot(&(&self.covariance * &shared));
+        (variance > 0.0).then(|| (term, self.left.dot(&column).powi(2) / variance))
+    }
+
+    /// The hysteresis of the largest score, its play sought between the given ones.
+    fn best_hysteresis(&self) -> Option<(RateTerm, f64)> {
+        let of = |half: f64| Some((half, self.scored(RateTerm::Hysteresis(half))?.1));
+        let scored = HALF_PLAYS.into_iter().filter_map(of);
+        let mut best = scored.max_by(|a, b| a.1.total_cmp(&b.1))?;
+        // Half of the way to the next play, then half of that.
+        let mut ratio = 1.5_f64.sqrt();
+        for _ in 0..PLAY_HALVINGS {
+            for half in [best.0 / ratio, best.0 * ratio] {
+                best = of(half).filter(|other| other.1 > best.1).unwrap_or(best);
+            }
+            ratio = ratio.sqrt();
+        }
+        Some((RateTerm::Hysteresis(best.0), best.1))
+    }
+
+    /// The step of the largest score, its instant sought beyond the given ones.
+    fn best_step(&self, steps: impl Iterator<Item = RateTerm>) -> Option<(RateTerm, f64)> {
+        let scored = steps.filter_map(|term| self.scored(term));
+        let mut best = scored.max_by(|a, b| a.1.total_cmp(&b.1))?;
+        let mut width = 0.125;
+        for _ in 0..HALVINGS {
+            let RateTerm::Step { log, time_s } = best.0 else {
+                return Some(best);
+            };
+            for side in [-width, width] {
+                let time_s = time_s + side * self.data.logs[log].block_s;
+                let other = self.scored(RateTerm::Step { log, time_s });
+                best = other.filter(|other| other.1 > best.1).unwrap_or(best);
+            }
+            width *= 0.5;
+        }
+        Some(best)
+    }
+}
+
+/// Steps at each quarter of the blocks of a log between two times, the first and the last block left out.
+fn quarters(log: usize, blocks: &Blocks, from_s: f64, to_s: f64) -> impl Iterator<Item = RateTerm> {
+    let (first_s, block_s) = (blocks.time_s[0], blocks.block_s);
+    let last_s = first_s + block_s * (blocks.len() as f64 - 1.5);
+    let times = (4..4 * blocks.len()).map(move |quarter| first_s + 0.25 * block_s * quarter as f64);
+    times
+        .filter(move |at| (from_s..=to_s).contains(at) && *at <= last_s)
+        .map(move |time_s| RateTerm::Step { log, time_s })
 }
 
 fn are_independent(columns: &DMatrix<f64>) -> bool {

@@ -254,7 +254,7 @@ fn a_dead_gyro_and_a_log_that_turns_over_are_refused() {
         &still,
         51,
     );
-    for force in &mut over.accel[1200..] {
+    for force in &mut over.accel.as_mut().unwrap()[1200..] {
         *force = force.map(|component| -component);
     }
     assert_eq!(kind(&[over]), Some(Unfit::NeverStatic));
@@ -289,4 +289,55 @@ fn an_earth_that_turns_the_other_way_is_told() {
     let made = |matrix: Matrix3<f64>| log(up, 40_000, &still, &matrix, &|_| Vector3::zeros(), 8);
     assert!(!evaluated(&[made(Matrix3::identity())], "").earth_is_reversed);
     assert!(evaluated(&[made(-Matrix3::identity())], "").earth_is_reversed);
+}
+
+#[test]
+fn steps_of_one_gyro_have_each_their_own_size() {
+    let up = Vector3::new(0.1, -0.2, 1.0);
+    let drift = |sample: usize| {
+        let steps = [(8_000, 150.0), (16_000, -60.0)];
+        let so_far = steps
+            .iter()
+            .filter(|(at, _)| sample >= *at)
+            .map(|(_, size)| size);
+        Vector3::new(so_far.sum(), 0.0, 0.0)
+    };
+    let made = log(up, 24_000, &|_| 0.0, &Matrix3::identity(), &drift, 9);
+    let report = evaluated(&[made], "");
+    let mut found: Vec<(f64, f64)> = report.gyros[0]
+        .effects()
+        .map(|(effect, one)| (effect.step.expect("a step").0, one.estimate))
+        .collect();
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let [(first_s, first), (second_s, second)] = found[..] else {
+        panic!("{found:?}");
+    };
+    assert!(
+        (first_s - 800.0).abs() < 5.0 && (second_s - 1600.0).abs() < 10.0,
+        "{found:?}"
+    );
+    assert!(
+        (first - 150.0).abs() < 15.0 && (second + 60.0).abs() < 15.0,
+        "{found:?}"
+    );
+}
+
+#[test]
+fn hysteresis_of_a_narrow_play_is_in_the_set() {
+    let samples = 24_000;
+    let temperature: Vec<f64> = (0..samples)
+        .map(|sample| 20.0 + 15.0 * (core::f64::consts::PI * sample as f64 / samples as f64).sin())
+        .collect();
+    // Half a play of 0.06 of the range.
+    let lagging = gyrocal_statistics::followed_with_play(&temperature, 0.9);
+    let up = Vector3::new(0.1, -0.2, 1.0);
+    let drift = |sample: usize| Vector3::new(30.0 * lagging[sample], 0.0, 0.0);
+    let mut made = log(up, samples, &|_| 0.0, &Matrix3::identity(), &drift, 10);
+    made.temperature_c = Some(temperature);
+    let report = evaluated(&[made], "");
+    let in_a_set = report.gyros[0].effects.iter().any(|effect| {
+        let mut names = core::iter::once(&effect.name).chain(&effect.alternatives);
+        names.any(|name| name == "gyro_x.temperature_hysteresis")
+    });
+    assert!(in_a_set, "{:?}", report.gyros[0].effects);
 }
