@@ -2,6 +2,7 @@
 
 mod allan;
 mod between_stops;
+mod courses;
 mod positions;
 mod rates;
 mod stops;
@@ -23,6 +24,7 @@ pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
     figures.extend(stops::figures(context)?);
     figures.extend(vertical::figures(context)?);
     figures.extend(rates::figures(context)?);
+    figures.extend(courses::figures(context)?);
     Ok(figures)
 }
 

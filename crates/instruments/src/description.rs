@@ -5,6 +5,7 @@ use std::path::Path;
 use gyrocal_record::{Error, InputErrorKind, SourceText};
 use serde::{Deserialize, Serialize};
 
+use crate::error::{InstrumentError, Unfit};
 use crate::file_format::FileFormat;
 
 pub mod table;
@@ -29,8 +30,8 @@ pub struct Description {
     pub time: Time,
     /// The three gyros; a record of a stable platform needs none.
     pub gyro: Option<Gyro>,
-    /// The three accelerometers.
-    pub accel: Accel,
+    /// The three accelerometers; an Allan analysis of gyros needs none.
+    pub accel: Option<Accel>,
     /// Temperature of the unit.
     pub temperature: Option<Temperature>,
     /// Rate or angle of the turntable that carries the unit.
@@ -205,6 +206,11 @@ impl Description {
         }
     }
 
+    /// The accelerometers, for what needs them.
+    pub(crate) fn accelerometers(&self) -> Result<&Accel, InstrumentError> {
+        self.accel.as_ref().ok_or_else(no_accelerometers)
+    }
+
     /// First mistake beyond types: its key, and the expected value.
     fn mistake(&self) -> Option<(&'static str, &'static str)> {
         let positive = |value: f64| value.is_finite() && value > 0.0;
@@ -220,7 +226,8 @@ impl Description {
         if !count(gyro.and_then(|gyro| gyro.counts_per_rad_per_s)) {
             return Some(("counts_per_rad_per_s", "positive numbers"));
         }
-        if !count(self.accel.counts_per_g) {
+        let accel = self.accel.as_ref();
+        if !count(accel.and_then(|accel| accel.counts_per_g)) {
             return Some(("counts_per_g", "positive numbers"));
         }
         if !self.table.as_ref().is_none_or(TableColumn::has_axis) {
@@ -235,7 +242,7 @@ impl Description {
         if !gravity.is_none_or(|gravity| (9.7..=9.9).contains(&gravity)) {
             return Some(("gravity_m_per_s2", "a number from 9.7 to 9.9"));
         }
-        if self.accel.unit.needs_gravity() && gravity.is_none() {
+        if accel.is_some_and(|accel| accel.unit.needs_gravity()) && gravity.is_none() {
             return Some((
                 "[accel]",
                 "`gravity_m_per_s2` in `[site]` with the units m/s2 and ft/s2",
@@ -243,6 +250,17 @@ impl Description {
         }
         None
     }
+}
+
+/// The error of a log of gyros alone where more is needed.
+pub(crate) fn no_accelerometers() -> InstrumentError {
+    InstrumentError::unfit(
+        Unfit::NoAccelerometers,
+        "a description without `[accel]`",
+        "the columns of three accelerometers, which tell attitude and rest",
+        "add `[accel]` with `columns = [\"ax\", \"ay\", \"az\"]` and `unit = \"g\"` by the names and the unit of the \
+         log; gyros alone suffice for gyrocal allan",
+    )
 }
 
 fn straight() -> [Direction; 3] {

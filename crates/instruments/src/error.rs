@@ -54,6 +54,8 @@ pub enum Unfit {
     NoScale,
     /// The log of an instrument test has no gyros.
     NoGyros,
+    /// What a command computes needs accelerometers, and the log has none.
+    NoAccelerometers,
     /// The axes are left-handed, or those of gyros and accelerometers are not the same.
     Axes,
     /// The attitudes do not determine the unknowns.

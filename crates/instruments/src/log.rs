@@ -1,4 +1,4 @@
-//! Logs of three gyros and three accelerometers.
+//! Logs of three gyros, most with three accelerometers.
 
 mod stamps;
 
@@ -11,19 +11,19 @@ use crate::clock::{Clock, resampled, steady_clock};
 use crate::columns::FileColumns;
 use crate::covariates::{refuse_saturated, temperatures_c};
 use crate::description::time::WEEK_S;
-use crate::description::{Description, Direction, Gyro, Jitter, Time};
+use crate::description::{Description, Direction, Gyro, Jitter, Time, no_accelerometers};
 use crate::error::{InstrumentError, Unfit};
 use crate::scale::{accel_scale, gyro_scale};
 
-/// Samples of six sensors; all vectors have the same length.
+/// Samples of gyros and accelerometers; all vectors have the same length.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Log {
     /// End of the interval of each sample.
     pub time_s: Vec<f64>,
     /// Rate about body x, y, z: rad/s, or counts above zero if the scale is not known.
     pub gyro: Vec<[f64; 3]>,
-    /// Specific force along body x, y, z: g, or counts above zero if the scale is not known.
-    pub accel: Vec<[f64; 3]>,
+    /// Specific force along body x, y, z: g, or counts above zero if the scale is not known; `None` of gyros alone.
+    pub accel: Option<Vec<[f64; 3]>>,
     /// Temperature \[degrees Celsius\], if the log has it.
     pub temperature_c: Option<Vec<f64>>,
     /// Rate of the turntable about its axis \[rad/s\], if the log has it.
@@ -49,7 +49,7 @@ const JITTER: f64 = 0.05;
 const LONGEST_JITTER: f64 = 10.0;
 
 impl Log {
-    /// Reads a log.
+    /// Reads a log. One whose description has no accelerometers is of gyros alone.
     ///
     /// # Errors
     ///
@@ -87,7 +87,7 @@ impl Log {
                 .map(|sample| sample as f64 * interval_s)
                 .collect(),
             gyro,
-            accel,
+            accel: Some(accel),
             temperature_c: None,
             table_rate: None,
             gyro_in_counts: false,
@@ -95,6 +95,15 @@ impl Log {
             interval_s,
             clock: Clock::Rate,
         }
+    }
+
+    /// Specific force, as [`Self::accel`], for what needs it.
+    ///
+    /// # Errors
+    ///
+    /// [`Unfit::NoAccelerometers`].
+    pub fn force(&self) -> Result<&[[f64; 3]], InstrumentError> {
+        self.accel.as_deref().ok_or_else(no_accelerometers)
     }
 
     /// Number of samples.
@@ -112,10 +121,12 @@ impl Log {
     fn from_columns(file: FileColumns, description: &Description) -> Result<Self, InstrumentError> {
         let gyro = gyro_of(description)?;
         let gyro_scale = gyro_scale(gyro)?;
-        let accel_scale = accel_scale(description)?;
+        let accel = description.accel.as_ref();
+        let accel_scale = accel.map(|accel| accel_scale(accel, &description.site));
+        let accel_scale = accel_scale.transpose()?;
         let columns = &file.values;
         let rows = columns.first().map_or(0, Vec::len);
-        let mut others = columns[6..].iter();
+        let mut others = columns[sensors(description)..].iter();
         let stamps = description.time.column.as_ref().and_then(|_| others.next());
         let weeks = description
             .time
@@ -147,7 +158,9 @@ impl Log {
             };
             (0..rows).map(sample).collect::<Vec<[f64; 3]>>()
         };
-        let accel = &description.accel;
+        let force = accel.zip(accel_scale).map(|(accel, scale)| {
+            body(3, accel.zero_counts, scale.unwrap_or([1.0; 3]), accel.axes)
+        });
         let log = Self {
             interval_s,
             gyro: body(
@@ -156,16 +169,11 @@ impl Log {
                 gyro_scale.unwrap_or([1.0; 3]),
                 gyro.axes,
             ),
-            accel: body(
-                3,
-                accel.zero_counts,
-                accel_scale.unwrap_or([1.0; 3]),
-                accel.axes,
-            ),
+            accel: force,
             temperature_c,
             table_rate,
             gyro_in_counts: gyro_scale.is_none(),
-            accel_in_counts: accel_scale.is_none(),
+            accel_in_counts: accel_scale.is_some_and(|scale| scale.is_none()),
             time_s,
             clock,
         };
@@ -231,7 +239,9 @@ impl Log {
             temperature_c: self.temperature_c.map(alone),
             table_rate: self.table_rate.map(alone),
             gyro: resampled(&self.time_s, &self.gyro, &at_s),
-            accel: resampled(&self.time_s, &self.accel, &at_s),
+            accel: self
+                .accel
+                .map(|force| resampled(&self.time_s, &force, &at_s)),
             clock: Clock::Resampled { jitter_s },
             time_s: at_s,
             ..self
@@ -262,10 +272,16 @@ fn times(
     Ok((time_s, Clock::Stamps))
 }
 
+/// Columns of gyros and accelerometers, which come first.
+fn sensors(description: &Description) -> usize {
+    3 + 3 * usize::from(description.accel.is_some())
+}
+
 /// Columns of the description: gyros, accelerometers, time, GPS week, temperature, turntable.
 fn names(description: &Description) -> Result<Vec<&str>, InstrumentError> {
     let sensors = gyro_of(description)?.columns.iter();
-    let sensors = sensors.chain(&description.accel.columns);
+    let forces = description.accel.iter().flat_map(|accel| &accel.columns);
+    let sensors = sensors.chain(forces);
     let mut names: Vec<&str> = sensors.map(String::as_str).collect();
     names.extend(description.time.column.as_deref());
     names.extend(description.time.week_column.as_deref());
@@ -278,8 +294,7 @@ fn names(description: &Description) -> Result<Vec<&str>, InstrumentError> {
 
 /// Index among the columns of that with dates and times.
 fn dated(description: &Description) -> Option<usize> {
-    const TIME: usize = 6;
-    description.time.is_text().then_some(TIME)
+    description.time.is_text().then(|| sensors(description))
 }
 
 fn gyro_of(description: &Description) -> Result<&Gyro, InstrumentError> {

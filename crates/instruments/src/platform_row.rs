@@ -45,6 +45,7 @@ pub(crate) struct Fault {
 #[derive(Debug)]
 pub(crate) struct PlatformRow<'a> {
     description: &'a Description,
+    accel: &'a Accel,
     scale: [f64; 3],
     names: Vec<&'a str>,
     time: Option<usize>,
@@ -54,8 +55,8 @@ pub(crate) struct PlatformRow<'a> {
 
 impl<'a> PlatformRow<'a> {
     pub(crate) fn new(description: &'a Description) -> Result<Self, InstrumentError> {
-        let mut names: Vec<&str> = Vec::new();
-        names.extend(description.accel.columns.iter().map(String::as_str));
+        let accel = description.accelerometers()?;
+        let mut names: Vec<&str> = accel.columns.iter().map(String::as_str).collect();
         let mut also = |name: Option<&'a String>| {
             let name = name?;
             names.push(name);
@@ -64,7 +65,7 @@ impl<'a> PlatformRow<'a> {
         let time = also(description.time.column.as_ref());
         let week = also(description.time.week_column.as_ref());
         let temperature = also(description.temperature.as_ref().map(|it| &it.column));
-        let scale = accel_scale(description)?.ok_or_else(|| {
+        let scale = accel_scale(accel, &description.site)?.ok_or_else(|| {
             InstrumentError::unfit(
                 Unfit::NoScale,
                 "`counts_per_g = \"from-stops\"` for a record of a stable platform",
@@ -75,6 +76,7 @@ impl<'a> PlatformRow<'a> {
         })?;
         Ok(Self {
             description,
+            accel,
             scale,
             names,
             time,
@@ -92,7 +94,7 @@ impl<'a> PlatformRow<'a> {
     pub(crate) fn of(&self, cells: &[Cell<'_>], row: usize) -> Result<Row, Fault> {
         let mut raw = [0.0; 3];
         for (axis, value) in raw.iter_mut().enumerate() {
-            *value = (self.value(cells, axis, row)? - self.accel().zero_counts) * self.scale[axis];
+            *value = (self.value(cells, axis, row)? - self.accel.zero_counts) * self.scale[axis];
         }
         let temperature_c = match (self.temperature, &self.description.temperature) {
             (Some(column), Some(temperature)) => {
@@ -102,13 +104,9 @@ impl<'a> PlatformRow<'a> {
         };
         Ok(Row {
             time_s: self.time_s(cells, row)?,
-            accel_g: self.accel().axes.map(|direction| direction.of(raw)),
+            accel_g: self.accel.axes.map(|direction| direction.of(raw)),
             temperature_c,
         })
-    }
-
-    fn accel(&self) -> &'a Accel {
-        &self.description.accel
     }
 
     fn time_s(&self, cells: &[Cell<'_>], row: usize) -> Result<f64, Fault> {

@@ -169,7 +169,9 @@ pub fn evaluate_rates(
         .map(|log| Blocks::of(log, count, axis, vertical))
         .collect();
     let blocks = blocks?;
-    refuse_wrong_norm(logs.iter().map(mean_norm_g))?;
+    let norms_g = logs.iter().map(mean_norm_g);
+    let norms_g: Vec<f64> = norms_g.collect::<Result<_, _>>()?;
+    refuse_wrong_norm(norms_g.into_iter())?;
     let level_sigma_rad = settings.level_sigma_deg.to_radians();
     let mut laws = Vec::with_capacity(3);
     for gyro in 0..3 {
@@ -357,10 +359,10 @@ fn check(logs: &[Log], description: &Description) -> Result<f64, InstrumentError
 }
 
 /// Norm of the mean specific force of a log \[g\].
-fn mean_norm_g(log: &Log) -> f64 {
-    let mean =
-        |axis: usize| log.accel.iter().map(|force| force[axis]).sum::<f64>() / log.len() as f64;
-    (0..3).map(|axis| mean(axis).powi(2)).sum::<f64>().sqrt()
+fn mean_norm_g(log: &Log) -> Result<f64, InstrumentError> {
+    let force = log.force()?;
+    let mean = |axis: usize| force.iter().map(|force| force[axis]).sum::<f64>() / log.len() as f64;
+    Ok((0..3).map(|axis| mean(axis).powi(2)).sum::<f64>().sqrt())
 }
 
 fn never_changes(gyro: usize) -> InstrumentError {

@@ -1,6 +1,6 @@
 //! Factors from the numbers of a log to rad/s and g, by its description.
 
-use crate::description::{CountScale, Description, Gyro, GyroUnit};
+use crate::description::{Accel, CountScale, Gyro, GyroUnit, Site};
 use crate::error::{InstrumentError, Unfit};
 
 /// Factor from counts above zero to rad/s; `None` if turns are to determine it.
@@ -16,12 +16,9 @@ pub(crate) fn gyro_scale(gyro: &Gyro) -> Result<Option<[f64; 3]>, InstrumentErro
 }
 
 /// Factor from counts above zero to g; `None` if stops are to determine it.
-pub(crate) fn accel_scale(description: &Description) -> Result<Option<[f64; 3]>, InstrumentError> {
-    let gravity = description.site.gravity_m_per_s2.unwrap_or(f64::NAN);
-    match (
-        description.accel.unit.in_g(gravity),
-        description.accel.counts_per_g,
-    ) {
+pub(crate) fn accel_scale(accel: &Accel, site: &Site) -> Result<Option<[f64; 3]>, InstrumentError> {
+    let gravity = site.gravity_m_per_s2.unwrap_or(f64::NAN);
+    match (accel.unit.in_g(gravity), accel.counts_per_g) {
         (Some(factor), _) => Ok(Some([factor; 3])),
         (None, Some(scale)) => Ok(per_unit(scale)),
         (None, None) => Err(no_scale("accel", "counts_per_g", "from-stops")),

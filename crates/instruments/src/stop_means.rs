@@ -2,6 +2,7 @@
 
 use core::ops::Range;
 
+use crate::error::InstrumentError;
 use crate::log::Log;
 
 /// Means of one stop.
@@ -44,29 +45,31 @@ const FEWEST_SAMPLES: usize = 8;
 /// pooled over all stops: the largest ratio of the variance of block means, times the length of the
 /// blocks, to the variance of samples, over blocks of a quarter of a second to one second. Slower
 /// noise shows in the residuals of the fit.
-#[must_use]
-pub fn stop_means(log: &Log, stops: &[Range<usize>]) -> Vec<StopMeans> {
+///
+/// # Errors
+///
+/// [`crate::Unfit::NoAccelerometers`].
+pub fn stop_means(log: &Log, stops: &[Range<usize>]) -> Result<Vec<StopMeans>, InstrumentError> {
+    let force = log.force()?;
     let gyro_inflation = inflation(&log.gyro, log.interval_s, stops);
-    let accel_inflation = inflation(&log.accel, log.interval_s, stops);
-    stops
-        .iter()
-        .map(|samples| {
-            let times = &log.time_s[samples.clone()];
-            let (gyro, gyro_sigma) = moments(&log.gyro[samples.clone()], gyro_inflation);
-            let (accel, accel_sigma) = moments(&log.accel[samples.clone()], accel_inflation);
-            StopMeans {
-                samples: samples.clone(),
-                from_s: times[0],
-                to_s: times[times.len() - 1],
-                time_s: 0.5 * (times[0] + times[times.len() - 1]),
-                gyro,
-                gyro_sigma,
-                gyro_parts: parts(&log.gyro[samples.clone()], gyro),
-                accel,
-                accel_sigma,
-            }
-        })
-        .collect()
+    let accel_inflation = inflation(force, log.interval_s, stops);
+    let means = stops.iter().map(|samples| {
+        let times = &log.time_s[samples.clone()];
+        let (gyro, gyro_sigma) = moments(&log.gyro[samples.clone()], gyro_inflation);
+        let (accel, accel_sigma) = moments(&force[samples.clone()], accel_inflation);
+        StopMeans {
+            samples: samples.clone(),
+            from_s: times[0],
+            to_s: times[times.len() - 1],
+            time_s: 0.5 * (times[0] + times[times.len() - 1]),
+            gyro,
+            gyro_sigma,
+            gyro_parts: parts(&log.gyro[samples.clone()], gyro),
+            accel,
+            accel_sigma,
+        }
+    });
+    Ok(means.collect())
 }
 
 fn moments(samples: &[[f64; 3]], inflation: [f64; 3]) -> ([f64; 3], [f64; 3]) {

@@ -82,6 +82,7 @@ pub fn find_stops(
     log: &Log,
     settings: &StopSettings,
 ) -> Result<Vec<Range<usize>>, InstrumentError> {
+    let force = log.force()?;
     let samples = |time_s: f64| (time_s / log.interval_s).round() as usize;
     let window = samples(settings.window_s).max(8);
     if log.len() < 4 * window {
@@ -93,13 +94,13 @@ pub fn find_stops(
         ));
     }
     let gyro = Windows::of(&log.gyro, window);
-    let accel = Windows::of(&log.accel, window);
+    let accel = Windows::of(force, window);
     let [gyro_limit, accel_limit] = [
         gyro.quietest() * settings.gyro_factor,
         accel.quietest() * settings.accel_factor,
     ];
     let search = Search {
-        log,
+        force,
         gyro: &gyro,
         accel: &accel,
         window,
@@ -154,7 +155,7 @@ struct Limits {
 const LARGEST_DRIFT_RAD: f64 = 0.05;
 
 struct Search<'a> {
-    log: &'a Log,
+    force: &'a [[f64; 3]],
     gyro: &'a Windows,
     accel: &'a Windows,
     window: usize,
@@ -221,7 +222,7 @@ impl Search<'_> {
     fn drift_rad(&self, stop: &Range<usize>) -> f64 {
         let third = (stop.len() / 3).max(1);
         let mean = |samples: Range<usize>| {
-            let sum = self.log.accel[samples].iter().fold([0.0; 3], |sum, force| {
+            let sum = self.force[samples].iter().fold([0.0; 3], |sum, force| {
                 core::array::from_fn(|axis| sum[axis] + force[axis])
             });
             Vector3::from(sum)

@@ -144,7 +144,7 @@ pub fn import(
 ) -> Result<Imported, InstrumentError> {
     let latitude_deg = checks::check(log, description, settings)?;
     checks::refuse_large_bias(log, settings.averaging_s, earth_deg_per_h(latitude_deg))?;
-    let rows = integrate(log, settings.averaging_s);
+    let rows = integrate(log, settings.averaging_s)?;
     if rows.len() < FEWEST_ROWS {
         return Err(InstrumentError::unfit(
             Unfit::TooShort,

@@ -150,3 +150,34 @@ fn a_description_stands_for_columns_and_rate() {
     );
     assert_eq!(noise["curve"][0]["parts"].as_array().unwrap().len(), 4);
 }
+
+#[test]
+fn a_sample_that_no_noise_explains_is_left_out_and_told() {
+    let folder = Folder::new();
+    let wild = log()
+        .lines()
+        .enumerate()
+        .fold(String::new(), |text, (line, row)| {
+            text + if line == 501 { "900,1" } else { row } + "\n"
+        });
+    folder.put("l.csv", wild);
+    let arguments = [
+        "allan",
+        "l.csv",
+        "--columns",
+        "rate",
+        "--rate-hz",
+        "10",
+        "--json",
+        "o.json",
+    ];
+    let text = folder.succeed(&arguments);
+    assert!(text.starts_with("BAD SAMPLES  1 sample"), "{text}");
+    assert!(text.contains("sample 501 at 50 s (900 "), "{text}");
+    let json: serde_json::Value = serde_json::from_str(&folder.text("o.json")).unwrap();
+    let column = &json["columns"][0];
+    assert_eq!(column["left_out"]["samples"][0]["sample"], 501);
+    // The handbook's first deviation, of which the median in the place of one sample takes a thousandth.
+    let first = column["points"][0]["deviation"].as_f64().unwrap();
+    assert!((first / 0.292_231_9 - 1.0).abs() < 2e-3, "{first}");
+}

@@ -360,6 +360,11 @@ fn six_logs_are_six_positions() {
         text.contains("Not determined by these positions: accel_x.misalignment_y"),
         "{text}"
     );
+    // Two of them tell nothing of the noise between stops.
+    let two = folder.succeed(&["tumble", "4.csv", "5.csv", "--log-description", "log.toml"]);
+    assert!(two.starts_with("NOT TESTED  too few stops"), "{two}");
+    assert!(two.contains("a test needs six"), "{two}");
+    assert!(!two.contains("how sure"), "{two}");
     let json: serde_json::Value = serde_json::from_str(&folder.text("o.json")).unwrap();
     let finding = &json["few_positions"]["findings"][0];
     assert_eq!(finding["effect"], "gyro_x.g_z");

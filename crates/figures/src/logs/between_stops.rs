@@ -162,7 +162,7 @@ fn test(stops: usize, size: f64, seed: u64) -> Result<Test, InstrumentError> {
     } else {
         None
     };
-    let positions = positions(&rates, &forces);
+    let positions = positions(&rates, &forces)?;
     let (found, within) = tested(&positions)?;
     Ok(Test {
         noise,
@@ -224,7 +224,7 @@ fn hide(
     Some(term.id(gyro).to_owned())
 }
 
-fn positions(rates: &[Vec<f64>], forces: &[Vector3<f64>]) -> Positions {
+fn positions(rates: &[Vec<f64>], forces: &[Vector3<f64>]) -> Result<Positions, InstrumentError> {
     let samples = rates[0].len();
     let gyro = (0..samples).map(|at| core::array::from_fn(|axis| rates[axis][at] * DEG_PER_H));
     let accel = (0..samples).map(|at| forces[at / (STOP + TURN)].into());
@@ -237,7 +237,7 @@ fn positions(rates: &[Vec<f64>], forces: &[Vector3<f64>]) -> Positions {
         outputs_per_rad_per_s: [1.0; 3],
         latitude_deg: None,
     };
-    Positions::new(&stop_means(&log, &stops), &instrument)
+    Ok(Positions::new(&stop_means(&log, &stops)?, &instrument))
 }
 
 /// Names that a test finds, and whether its coefficients, which are zero, are in their intervals.

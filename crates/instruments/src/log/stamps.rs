@@ -69,8 +69,11 @@ impl Log {
             );
         };
         let count = self.time_s.windows(2).filter(|pair| repeats(pair)).count();
-        let same =
-            |at: usize| self.gyro[at] == self.gyro[at + 1] && self.accel[at] == self.accel[at + 1];
+        let same = |at: usize| {
+            let force = self.accel.as_ref();
+            self.gyro[at] == self.gyro[at + 1]
+                && force.is_none_or(|force| force[at] == force[at + 1])
+        };
         let (what, advice) = if same(first) {
             (
                 "rows with the stamp and the values of the row before",

@@ -27,7 +27,7 @@ const LEAST_SHARE: f64 = 1e-9;
 pub struct NoiseBetweenStops {
     /// Scatter of the stops beyond their standard errors: settling, turn-on of each log \[deg/h\].
     pub scatter_deg_per_h: [f64; 2],
-    /// Flicker, as bias instability: B of a one-sided density B²/(2πf) \[deg/h\].
+    /// Flicker, as bias instability: B of IEEE Std 952 \[deg/h\].
     pub flicker_deg_per_h: [f64; 2],
     /// Walk from stop to stop, as the standard deviation of an increment \[deg/h\].
     pub walk_deg_per_h: [f64; 2],

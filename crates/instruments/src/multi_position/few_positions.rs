@@ -9,10 +9,12 @@ use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 
 use super::between_stops::{BetweenStops, NoiseBetweenStops, TermEvidence};
+use super::log_biases::with_biases;
 use super::positions::Positions;
 use super::regression::{Fit, WeightedStops};
 use super::report::CoefficientReport;
 use super::terms::Term;
+use super::undetermined;
 use crate::error::{InstrumentError, Unfit};
 
 /// Largest decrease of the log-likelihood, integrated over the noise between stops, of an alternative: 97 of 100 hidden
@@ -257,23 +259,6 @@ fn open_terms(
         .collect()
 }
 
-/// Columns of a law and of the biases of logs after the first.
-fn with_biases(
-    data: &WeightedStops,
-    law: &[Term],
-    biases: usize,
-    positions: &Positions,
-) -> DMatrix<f64> {
-    let (terms, logs) = (data.columns(law), positions.logs());
-    DMatrix::from_fn(data.len(), law.len() + biases, |stop, place| {
-        match place.checked_sub(law.len()) {
-            None => terms[(stop, place)],
-            Some(log) if positions.log[stop] == logs[log + 1] => data.sigma[stop].recip(),
-            Some(_) => 0.0,
-        }
-    })
-}
-
 fn law_report(
     data: &WeightedStops,
     laws: &[Vec<Term>],
@@ -281,12 +266,15 @@ fn law_report(
     positions: &Positions,
 ) -> Result<FewPositionLaw, InstrumentError> {
     let law = &laws[data.gyro];
-    let columns = with_biases(data, law, between.biases, positions);
+    let columns = match between.biases {
+        0 => data.columns(law),
+        _ => with_biases(data, law, positions),
+    };
     // The fit may use every stop.
-    let fit = Fit::exact(&columns, &data.rates).ok_or_else(|| too_few(data.len()))?;
+    let fit = Fit::exact(&columns, &data.rates).ok_or_else(|| undetermined(data, law))?;
     let integrated = between
         .law(data.gyro, laws)
-        .ok_or_else(|| too_few(data.len()))?;
+        .ok_or_else(|| undetermined(data, law))?;
     let freedom = data.len() - columns.ncols();
     let p_value =
         (freedom > 0).then(|| chi_square_tail(fit.chi_square, freedom as f64).unwrap_or(f64::NAN));
@@ -303,7 +291,7 @@ fn law_report(
         is_new(data, law, *term)
             && (between.biases == 0 || between.terms(data.gyro, laws, &[*term])[0].is_some())
     };
-    let undetermined = of_gyro.filter(|term| !law.contains(term) && !is_open(term));
+    let open = of_gyro.filter(|term| !law.contains(term) && !is_open(term));
     Ok(FewPositionLaw {
         gyro: RATES[data.gyro].id.to_owned(),
         coefficients: coefficients.collect(),
@@ -311,9 +299,7 @@ fn law_report(
             .row_iter()
             .map(|row| row.iter().copied().collect())
             .collect(),
-        undetermined: undetermined
-            .map(|term| term.id(data.gyro).to_owned())
-            .collect(),
+        undetermined: open.map(|term| term.id(data.gyro).to_owned()).collect(),
         chi_square: fit.chi_square,
         degrees_of_freedom: freedom,
         p_value,

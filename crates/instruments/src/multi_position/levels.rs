@@ -141,3 +141,30 @@ fn kernel(axis: &[f64], ratio: f64) -> Vec<Vec<f64>> {
     };
     axis.iter().map(row).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_grid_is_bounded_whatever_the_scatter() {
+        for largest in [0.0, 1.0, 1e3, 1e9, f64::INFINITY, f64::NAN] {
+            let grid = Grid::new(largest, true);
+            // 36 levels of scatter and 10 of the others over the range, and zero of each.
+            assert!(grid.len() <= 37 * 11 * 11, "{largest}: {}", grid.len());
+            assert_eq!(grid.levels().count(), grid.len());
+        }
+    }
+
+    #[test]
+    fn probabilities_stay_probabilities() {
+        let grid = Grid::new(20.0, true);
+        let mut common = vec![f64::NEG_INFINITY; grid.len()];
+        common[grid.len() / 2] = 0.0;
+        let sum: f64 = grid.of_gyro(&common).iter().map(|one| exp(*one)).sum();
+        assert!((sum - 1.0).abs() < 1e-12, "{sum}");
+        // A gyro of which nothing is known tells nothing of the others.
+        let flat = grid.common(&vec![-3.0; grid.len()]);
+        assert!(flat.iter().all(|one| (one + 3.0).abs() < 1e-12));
+    }
+}

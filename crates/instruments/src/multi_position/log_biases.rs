@@ -34,20 +34,12 @@ pub(super) fn log_biases(
     law: &[Term],
     name: &str,
 ) -> Option<LogBiases> {
-    let logs = positions.log.iter().max().copied().unwrap_or(0);
+    let logs = positions.logs().len().saturating_sub(1);
     if logs == 0 {
         return None;
     }
     let data = data.with_excess_of(law);
-    let terms = data.columns(law);
-    let stops = data.len();
-    let columns = DMatrix::from_fn(stops, law.len() + logs, |stop, place| {
-        match place.checked_sub(law.len()) {
-            None => terms[(stop, place)],
-            Some(log) if positions.log[stop] == log + 1 => 1.0 / data.sigma[stop],
-            Some(_) => 0.0,
-        }
-    });
+    let columns = with_biases(&data, law, positions);
     let one_bias = data.fit(law)?;
     let many = Fit::of(&columns, &data.rates)?;
     let f = (one_bias.chi_square - many.chi_square) / logs as f64 / many.scale();
@@ -67,12 +59,31 @@ pub(super) fn log_biases(
     })
 }
 
+/// Columns of a law, and of a bias of each log after the first.
+pub(super) fn with_biases(
+    data: &WeightedStops,
+    law: &[Term],
+    positions: &Positions,
+) -> DMatrix<f64> {
+    let (terms, logs) = (data.columns(law), positions.logs());
+    let count = logs.len().saturating_sub(1);
+    DMatrix::from_fn(data.len(), law.len() + count, |stop, place| {
+        match place.checked_sub(law.len()) {
+            None => terms[(stop, place)],
+            Some(log) if positions.log[stop] == logs[log + 1] => data.sigma[stop].recip(),
+            Some(_) => 0.0,
+        }
+    })
+}
+
 /// Positions whose rates have the biases of the first log.
 pub(super) fn with_one_bias(positions: &Positions, biases: &[(usize, LogBiases)]) -> Positions {
     let mut one = positions.clone();
+    let logs = positions.logs();
     for (gyro, found) in biases {
         for (rate, log) in one.rate_deg_per_h.iter_mut().zip(&positions.log) {
-            if let Some(place) = log.checked_sub(1) {
+            let place = logs.iter().position(|own| own == log);
+            if let Some(place) = place.and_then(|place| place.checked_sub(1)) {
                 rate[*gyro] -= found.differences_deg_per_h[place];
             }
         }

@@ -88,7 +88,7 @@ pub fn prepare(
     description: &Description,
     stops: &[Range<usize>],
 ) -> Result<PreparedTest, InstrumentError> {
-    let stops = stop_means(log, stops);
+    let stops = stop_means(log, stops)?;
     prepare_means(log, description, stops, true)
 }
 
@@ -133,7 +133,7 @@ pub fn prepare_logs(
             true => 0.0,
             false => end_s - from_s + log.interval_s,
         };
-        means.extend(stop_means(log, stops).into_iter().map(|stop| StopMeans {
+        means.extend(stop_means(log, stops)?.into_iter().map(|stop| StopMeans {
             from_s: stop.from_s + later_s,
             to_s: stop.to_s + later_s,
             time_s: stop.time_s + later_s,

@@ -112,9 +112,10 @@ pub(super) fn refuse_large_bias(
         let sum: Vector3<f64> = samples.iter().map(|sample| Vector3::from(*sample)).sum();
         (sum / count).norm()
     };
-    let norms = log.accel.iter().map(|force| Vector3::from(*force).norm());
+    let force = log.force()?;
+    let norms = force.iter().map(|force| Vector3::from(*force).norm());
     let rate = mean(&log.gyro);
-    let still = mean(&log.accel) >= STILL * norms.sum::<f64>() / count;
+    let still = mean(force) >= STILL * norms.sum::<f64>() / count;
     if !still || rate * averaging_s < LARGEST_TURN_RAD {
         return Ok(());
     }

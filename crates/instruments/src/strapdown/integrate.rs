@@ -2,6 +2,7 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
+use crate::error::InstrumentError;
 use crate::log::Log;
 
 /// One averaging interval in the axes of the virtual platform.
@@ -30,15 +31,19 @@ pub struct PlatformRow {
 /// middle by (turn)²/24, 8e-7 for a minute.
 ///
 /// The platform's axes are those of the body in the middle of the first row.
-#[must_use]
-pub fn integrate(log: &Log, averaging_s: f64) -> Vec<PlatformRow> {
+///
+/// # Errors
+///
+/// [`crate::Unfit::NoAccelerometers`].
+pub fn integrate(log: &Log, averaging_s: f64) -> Result<Vec<PlatformRow>, InstrumentError> {
+    let force = log.force()?;
     let block = ((averaging_s / log.interval_s).round() as usize).max(1);
     let mut attitude = UnitQuaternion::identity();
     let mut before = Vector3::zeros();
     let mut sums = Vec::new();
     let mut middles = Vec::new();
     let mut sum = Vector3::zeros();
-    for (sample, (rate, force_g)) in log.gyro.iter().zip(&log.accel).enumerate() {
+    for (sample, (rate, force_g)) in log.gyro.iter().zip(force).enumerate() {
         if sample % block == block / 2 {
             middles.push(attitude);
         }
@@ -61,21 +66,19 @@ pub fn integrate(log: &Log, averaging_s: f64) -> Vec<PlatformRow> {
         }
     }
     let platform_c_start = middles.first().copied().unwrap_or_default().inverse();
-    sums.iter()
-        .enumerate()
-        .map(|(row, force_g)| {
-            let samples = row * block..(row + 1) * block;
-            let end_s = log.time_s[samples.end - 1];
-            let start_s = log.time_s[samples.start] - log.interval_s;
-            PlatformRow {
-                time_s: 0.5 * (start_s + end_s),
-                force_g: (platform_c_start * force_g).into(),
-                platform_q_body: quaternion(platform_c_start * middles[row]),
-                gyro_scatter_rad_per_s: scatter(&log.gyro[samples.clone()]),
-                accel_scatter_g: scatter(&log.accel[samples]),
-            }
-        })
-        .collect()
+    let rows = sums.iter().enumerate().map(|(row, force_g)| {
+        let samples = row * block..(row + 1) * block;
+        let end_s = log.time_s[samples.end - 1];
+        let start_s = log.time_s[samples.start] - log.interval_s;
+        PlatformRow {
+            time_s: 0.5 * (start_s + end_s),
+            force_g: (platform_c_start * force_g).into(),
+            platform_q_body: quaternion(platform_c_start * middles[row]),
+            gyro_scatter_rad_per_s: scatter(&log.gyro[samples.clone()]),
+            accel_scatter_g: scatter(&force[samples]),
+        }
+    });
+    Ok(rows.collect())
 }
 
 fn quaternion(rotation: UnitQuaternion<f64>) -> [f64; 4] {

@@ -19,7 +19,8 @@ pub(super) fn projected(
     horizontal_deg_per_h: f64,
 ) -> Option<[f64; 2]> {
     const CONFIDENCE: f64 = 0.95;
-    let sum: Vector3<f64> = log.accel.iter().map(|force| Vector3::from(*force)).sum();
+    let force = log.force().ok()?;
+    let sum: Vector3<f64> = force.iter().map(|force| Vector3::from(*force)).sum();
     let up = sum.normalize();
     let rates: Vec<f64> = log
         .gyro

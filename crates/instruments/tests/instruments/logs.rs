@@ -1,6 +1,6 @@
 //! Logs and their descriptions: columns, units, axes, clocks, and their faults.
 
-use gyrocal_instruments::{Description, InstrumentError, Log, Unfit};
+use gyrocal_instruments::{Description, InstrumentError, Log, StopSettings, Unfit, find_stops};
 use gyrocal_statistics::allan::{NoisePart, allan_deviation, fit_noise, octaves};
 
 const DESCRIPTION: &str = r#"
@@ -55,7 +55,30 @@ fn columns_units_and_axes_are_as_the_description_says() {
     for (found, expected) in log.gyro[7].iter().zip(expected) {
         assert!((found - expected).abs() < 1e-15);
     }
-    assert_eq!(log.accel[7], [0.0, 0.0, 1.0]);
+    assert_eq!(log.force().unwrap()[7], [0.0, 0.0, 1.0]);
+}
+
+#[test]
+fn gyros_alone_are_a_log_for_what_needs_no_more() {
+    let accel = DESCRIPTION.find("[accel]").unwrap();
+    let description = &DESCRIPTION[..accel];
+    let both = parse(&text(regular), DESCRIPTION).unwrap();
+    let alone = parse(&text(regular), description).unwrap();
+    assert_eq!((&alone.gyro, &alone.time_s), (&both.gyro, &both.time_s));
+    assert_eq!(alone.accel, None);
+    let error = find_stops(&alone, &StopSettings::default()).unwrap_err();
+    assert_eq!(error.kind(), Some(Unfit::NoAccelerometers));
+    assert!(error.to_string().contains("gyrocal allan"), "{error}");
+    // Time stamps follow three columns in the place of six.
+    let dated = description.replace("unit_s = 1e-3", "unit = \"rfc3339\"");
+    let stamp = |row: usize| format!("2024-05-01T00:{:02}:{:02}Z", row / 60, row % 60);
+    let rows = (0..200).map(|row| format!("{},90,180,-90\n", stamp(row)));
+    let dated = parse(
+        &("ms,p,q,r\n".to_owned() + &rows.collect::<String>()),
+        &dated,
+    )
+    .unwrap();
+    assert_eq!(dated.interval_s, 1.0);
 }
 
 #[test]
@@ -251,7 +274,7 @@ fn counts_without_a_scale_are_refused() {
     let estimated = DESCRIPTION.replace("[1000, 2000, 4000]", "\"from-stops\"");
     let log = parse(&text(regular), &estimated).unwrap();
     assert!(log.accel_in_counts);
-    assert_eq!(log.accel[0], [0.0, 0.0, 4000.0]);
+    assert_eq!(log.force().unwrap()[0], [0.0, 0.0, 4000.0]);
 }
 
 #[test]

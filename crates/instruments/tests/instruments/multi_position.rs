@@ -80,6 +80,18 @@ fn a_walk_is_no_ramp() {
 }
 
 #[test]
+fn a_ramp_of_many_stops_is_found_beside_walks() {
+    let ramp = |stop: usize| 4.0 * stop as f64;
+    let mut positions = positions(5, 150, nominal);
+    for (stop, rate) in positions.rate_deg_per_h.iter_mut().enumerate() {
+        rate[2] += ramp(stop);
+    }
+    let steps = search(&positions, &all(&positions), &SearchSettings::default());
+    let names: Vec<&str> = steps.iter().map(|step| step.term.id(step.gyro)).collect();
+    assert_eq!(names, ["gyro_z.ramp"]);
+}
+
+#[test]
 fn permutations_are_as_many_as_the_probability_asks_for() {
     let positions = positions(1, 38, |gyro, force| {
         nominal(gyro, force) + if gyro == 0 { 250.0 * force[2] } else { 0.0 }
@@ -331,9 +343,9 @@ fn stops_scales_and_misalignments_are_found_in_a_log() {
 #[test]
 fn accelerometers_are_calibrated_by_the_norm() {
     let mut log = stops_and_turns(24, &Unit::mems(), 12);
-    let stops = stop_means(&log, &find_stops(&log, &StopSettings::default()).unwrap());
+    let stops = stop_means(&log, &find_stops(&log, &StopSettings::default()).unwrap()).unwrap();
     let truth: Vec<[f64; 3]> = stops.iter().map(|stop| stop.accel).collect();
-    for force in &mut log.accel {
+    for force in log.accel.as_mut().unwrap() {
         let [x, y, z] = *force;
         *force = [
             4000.0 * x + 20.0 * y + 100.0,
@@ -342,7 +354,7 @@ fn accelerometers_are_calibrated_by_the_norm() {
         ];
     }
     log.accel_in_counts = true;
-    let stops = stop_means(&log, &find_stops(&log, &StopSettings::default()).unwrap());
+    let stops = stop_means(&log, &find_stops(&log, &StopSettings::default()).unwrap()).unwrap();
     let calibration = accel_from_norm(&stops).unwrap();
     // z to x cannot be told from a turn of all axes, so only norms and angles must agree.
     let forces: Vec<Vector3<f64>> = stops
@@ -374,7 +386,7 @@ fn standard_errors_hold_for_coloured_noise() {
     let ranges: Vec<_> = (0..60)
         .map(|stop| 1000 * stop..1000 * stop + 1000)
         .collect();
-    let stops = stop_means(&log, &ranges);
+    let stops = stop_means(&log, &ranges).unwrap();
     for axis in 0..3 {
         let squares = stops
             .iter()
@@ -392,7 +404,7 @@ fn logs_that_are_not_what_they_are_said_to_be_are_refused() {
     assert!(prepared(&good).is_ok());
     let changed = |change: &dyn Fn(&mut [f64; 3], &mut [f64; 3])| {
         let mut log = good.clone();
-        for (gyro, accel) in log.gyro.iter_mut().zip(&mut log.accel) {
+        for (gyro, accel) in log.gyro.iter_mut().zip(log.accel.as_mut().unwrap()) {
             change(gyro, accel);
         }
         prepared(&log).unwrap_err()

@@ -164,7 +164,7 @@ fn coning_is_no_rotation() {
             (increment / INTERVAL_S, force)
         })
         .collect();
-    let rows = integrate(&log(INTERVAL_S, &samples), 10.0);
+    let rows = integrate(&log(INTERVAL_S, &samples), 10.0).unwrap();
     // Gravity along body x shows a turn about z.
     let [first, last] = [&rows[0], &rows[rows.len() - 1]];
     let angle = |force_g: &[f64; 3]| force_g[1].atan2(force_g[0]);
@@ -225,7 +225,7 @@ fn disturbed_rows_are_missing_and_told() {
         };
         for axis in 0..3 {
             log.gyro[sample][axis] += 1e-6 * scatter * noise.normal();
-            log.accel[sample][axis] += 1e-6 * noise.normal();
+            log.accel.as_mut().unwrap()[sample][axis] += 1e-6 * noise.normal();
         }
     }
     let settings = ImportSettings {
@@ -255,7 +255,11 @@ fn what_is_no_static_unit_in_these_units_is_refused() {
     let changed = |change: Change<'_>| {
         let mut log = good.clone();
         for sample in 0..log.len() {
-            change(sample, &mut log.gyro[sample], &mut log.accel[sample]);
+            change(
+                sample,
+                &mut log.gyro[sample],
+                &mut log.accel.as_mut().unwrap()[sample],
+            );
         }
         log
     };

@@ -60,7 +60,7 @@ fn a_log_of_six_sensors_is_read_from_a_matrix() {
         let first = (row * 7) as f64;
         assert_eq!(log.gyro[row], [0.0, 1.0, 2.0].map(|at| (first + at) / 64.0));
         assert_eq!(
-            log.accel[row],
+            log.force().unwrap()[row],
             [3.0, 4.0, 5.0].map(|at| (first + at) / 64.0)
         );
     }
