@@ -86,7 +86,7 @@ impl Reply {
         Ok(())
     }
 
-    /// Writes all staged files or none.
+    /// Writes the staged files, each of them whole.
     pub(crate) fn committed(mut self) -> Result<Self, Failure> {
         std::mem::take(&mut self.outputs).commit()?;
         Ok(self)

@@ -1,5 +1,6 @@
 //! `gyrocal report`: answers as one HTML file.
 
+use std::io::BufRead;
 use std::path::{Path, PathBuf};
 
 use clap::{ArgAction, Args};
@@ -126,9 +127,13 @@ pub(crate) fn run(arguments: &ReportArguments) -> Result<Reply, Failure> {
     Ok(answer)
 }
 
+/// Whether a file is a result, which is JSON; what cannot be read is told where it is read.
 fn is_result(path: &Path) -> bool {
-    path.extension()
-        .is_some_and(|form| form.eq_ignore_ascii_case("json"))
+    let opened = gyrocal_record::open_content(path).ok();
+    opened.is_some_and(|mut content| {
+        let first = content.fill_buf().unwrap_or_default();
+        first.trim_ascii_start().starts_with(b"{")
+    })
 }
 
 /// Uncertainty of a record, and the budget that it shows.

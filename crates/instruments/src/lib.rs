@@ -2,7 +2,7 @@
 //!
 //! # What it is
 //!
-//! - [`Log`] and [`Description`]: samples of six sensors from a CSV file whose columns, units and axes a
+//! - [`Log`] and [`Description`]: samples of gyros and accelerometers from a file whose columns, units and axes a
 //!   TOML file describes.
 //! - [`read_record`] and [`average_file`]: the record of a stable platform from a described file of any such
 //!   format.

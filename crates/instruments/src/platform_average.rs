@@ -32,7 +32,7 @@ pub struct AveragedRecordFile {
 }
 
 /// Averages the record of a described text file over intervals, the first of which starts at the first row.
-/// The file is never in memory as a whole.
+/// A text is never in memory as a whole, unless it comes through a pipe.
 ///
 /// # Errors
 ///

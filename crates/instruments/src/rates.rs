@@ -155,7 +155,7 @@ const FEWEST_BLOCKS: usize = 8;
 ///
 /// [`Unfit::TooShort`] without a log; [`Unfit::NoScale`] in counts; [`Unfit::Setting`] without latitude;
 /// [`Unfit::Norm`] if specific force is not gravity; [`Unfit::NeverStatic`] if it turns within a log;
-/// [`Unfit::Saturated`] for a gyro that never changes.
+/// [`Unfit::Saturated`] for a gyro that never changes; [`Unfit::NoAccelerometers`].
 pub fn evaluate_rates(
     logs: &[Log],
     description: &Description,

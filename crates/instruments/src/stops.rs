@@ -77,7 +77,7 @@ const MOST_CORRELATED: f64 = 10.0;
 /// # Errors
 ///
 /// [`Unfit::NeverStatic`] if the quietest windows are in motion too, or if no stop is long
-/// enough; [`Unfit::TooShort`] if the log is shorter than a few windows.
+/// enough; [`Unfit::TooShort`] if the log is shorter than a few windows; [`Unfit::NoAccelerometers`].
 pub fn find_stops(
     log: &Log,
     settings: &StopSettings,

@@ -136,7 +136,7 @@ pub struct ImportReport {
 /// [`Unfit::NoScale`] in counts; [`Unfit::Setting`] without latitude or with settings out of
 /// range; [`Unfit::TooShort`]; [`Unfit::Norm`] if specific force is not gravity;
 /// [`Unfit::NeverStatic`] if gravity does not rotate uniformly in the virtual platform;
-/// [`Unfit::GyroScale`] and [`Unfit::Axes`] if it does not rotate at Earth rate.
+/// [`Unfit::GyroScale`] and [`Unfit::Axes`] if it does not rotate at Earth rate; [`Unfit::NoAccelerometers`].
 pub fn import(
     log: &Log,
     description: &Description,

@@ -15,8 +15,10 @@
 //! A value is factor × number + offset. An output without a value, or `nan`, is missing.
 
 use std::collections::BTreeMap;
+use std::io::{self, ErrorKind};
 use std::path::Path;
 
+use gyrocal_record::{Error, read_content};
 use serde::Deserialize;
 
 use crate::description::{Description, Output};
@@ -78,11 +80,18 @@ fn refuse(origin: &str, problem: String, advice: impl Into<String>) -> PlantErro
     }
 }
 
-fn read(path: &Path) -> Result<String, PlantError> {
-    std::fs::read_to_string(path).map_err(|reason| PlantError::Unreadable {
+/// The text of an input file, which may be compressed.
+pub(crate) fn read_text(path: &Path) -> Result<String, PlantError> {
+    let unreadable = |reason| PlantError::Unreadable {
         path: path.to_owned(),
         reason,
-    })
+    };
+    let bytes = read_content(path).map_err(|error| match error {
+        Error::Unreadable { reason, .. } => unreadable(reason),
+        other => unreadable(io::Error::other(other)),
+    })?;
+    String::from_utf8(bytes)
+        .map_err(|error| unreadable(io::Error::new(ErrorKind::InvalidData, error)))
 }
 
 impl ColumnMap {
@@ -92,7 +101,7 @@ impl ColumnMap {
     /// [`PlantError::Unreadable`], [`PlantError::Input`].
     pub fn read(path: &Path) -> Result<Self, PlantError> {
         let origin = path.display().to_string();
-        toml::from_str(&read(path)?).map_err(|error| {
+        toml::from_str(&read_text(path)?).map_err(|error| {
             let advice = "give [time], [inputs], [outputs] and [regressors], each `name = \"column\"` or \
                           `name = { column = \"column\", factor = 1.0, offset = 0.0 }`";
             refuse(&origin, error.to_string().trim().to_owned(), advice)
@@ -127,7 +136,7 @@ impl ColumnMap {
         outputs: &[Output],
     ) -> Result<PlantRecord, PlantError> {
         let origin = path.display().to_string();
-        let text = read(path)?;
+        let text = read_text(path)?;
         let mut reader = csv::ReaderBuilder::new()
             .trim(csv::Trim::All)
             .from_reader(text.as_bytes());

@@ -8,6 +8,7 @@ use gyrocal_hypothesis::Plant;
 use gyrocal_scalar::{Model, NamedInputs};
 
 use crate::catalogue::Catalogue;
+use crate::columns::read_text;
 use crate::description::Description;
 use crate::error::PlantError;
 use crate::functions::Functions;
@@ -37,10 +38,7 @@ impl LoadedPlant {
     /// # Errors
     /// [`PlantError::Unreadable`], [`PlantError::Program`], [`PlantError::NoPlant`].
     pub fn read(path: &Path) -> Result<Self, PlantError> {
-        let text = std::fs::read_to_string(path).map_err(|reason| PlantError::Unreadable {
-            path: path.to_owned(),
-            reason,
-        })?;
+        let text = read_text(path)?;
         Self::parse(&text, &path.display().to_string())
     }
 

@@ -62,7 +62,7 @@ pub enum InputRole {
 }
 
 impl Input {
-    /// A file by its hash, of the bytes that this process read last.
+    /// A file by its hash: of the bytes that this process read last, if it read all, else of those that it has now.
     ///
     /// # Errors
     ///

@@ -8,7 +8,7 @@ pub fn record_and_bench(inputs: &[Input]) -> String {
     let path = |place: usize, otherwise: &str| {
         inputs
             .get(place)
-            .map_or_else(|| otherwise.to_owned(), |input| shell_quoted(&input.path))
+            .map_or_else(|| otherwise.to_owned(), |input| argument(&input.path))
     };
     format!(
         "{} --bench {}",
@@ -17,13 +17,24 @@ pub fn record_and_bench(inputs: &[Input]) -> String {
     )
 }
 
+/// A path as a shell reads it; of a stream, which is gone when the next command runs, `FILE`.
+fn argument(path: &str) -> String {
+    let is_stream = ["/dev/", "/proc/"]
+        .iter()
+        .any(|folder| path.starts_with(folder));
+    match is_stream {
+        true => "FILE".to_owned(),
+        false => shell_quoted(path),
+    }
+}
+
 /// Records, bench files, axes of strapdown units and the map of columns as arguments of a command, as a shell
 /// reads them. A bench file of all records is named once.
 #[must_use]
 pub fn command_files<'a>(inputs: impl Iterator<Item = (InputRole, &'a str)> + Clone) -> String {
     let of = |role: InputRole| -> Vec<String> {
         let own = inputs.clone().filter(|(other, _)| *other == role);
-        own.map(|(_, path)| shell_quoted(path)).collect()
+        own.map(|(_, path)| argument(path)).collect()
     };
     let mut benches = of(InputRole::Bench);
     if benches.windows(2).all(|pair| pair[0] == pair[1]) {

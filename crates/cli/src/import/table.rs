@@ -15,8 +15,8 @@ use crate::{Failure, Reply};
 /// A table of a stable platform in another format: CSV of any dialect, plain or compressed, MATLAB, Parquet,
 /// MCAP.
 ///
-/// Columns, units, axes and the dialect are those of the map. With --average the file is read in pieces, so
-/// that it may be larger than memory.
+/// Columns, units, axes and the dialect are those of the map. With --average a text is read in pieces, so
+/// that its file may be larger than memory.
 #[derive(Debug, Args)]
 pub(super) struct TableArguments {
     /// The table: CSV, also compressed by gzip or Zstandard; MATLAB; with their features Parquet and MCAP.

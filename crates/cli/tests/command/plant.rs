@@ -171,6 +171,27 @@ fn several_records_have_one_answer_and_a_report() {
 }
 
 #[test]
+#[cfg(target_os = "linux")]
+fn a_record_in_a_pipe_has_the_hash_of_its_file() {
+    let folder = Folder::new();
+    let example = |name: &str| repository(&format!("examples/duffing/{name}"));
+    folder.put("record.csv", std::fs::read(example("record.csv")).unwrap());
+    let [plant, columns] =
+        ["plant.json", "columns.toml"].map(|name| example(name).display().to_string());
+    let of = |record: &str| {
+        let ends = ["--columns", &columns, "--json", "o.json"];
+        let all = [&["plant", "diagnose", &plant, record][..], &ends].concat();
+        let output = folder.run_with_stdin(&all, "record.csv");
+        assert!(output.status.success(), "{output:?}");
+        let answer: serde_json::Value = serde_json::from_str(&folder.text("o.json")).unwrap();
+        let inputs = answer["manifest"]["inputs"].as_array().unwrap().iter();
+        let hashes: Vec<serde_json::Value> = inputs.map(|one| one["sha256"].clone()).collect();
+        (hashes, answer["findings"].clone())
+    };
+    assert_eq!(of("/dev/stdin"), of("record.csv"));
+}
+
+#[test]
 fn a_wave_of_a_known_period_is_found() {
     let folder = Folder::new();
     let example = |name: &str| repository(&format!("examples/duffing/{name}"));

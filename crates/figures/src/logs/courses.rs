@@ -40,7 +40,7 @@ const HALF_PLAYS: [f64; 2] = [0.06, 0.4];
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Course {
     kind: Kind,
-    /// Names that were found of any gyro, each with its alternatives.
+    /// Names that were found of the first gyro, of a sound log of any, each with its alternatives.
     found: Vec<Vec<String>>,
     /// Whether the interval of the size of a step holds the truth; `None` where it is not found.
     size: Option<bool>,
@@ -176,7 +176,12 @@ fn course(seed: u64) -> Result<Course, InstrumentError> {
     log.temperature_c = Some(temperature);
     let description = described(RATE_HZ as f64, unit.latitude_deg, "")?;
     let report = evaluate_rates(&[log], &description, &RateSettings::default())?;
-    let all = report.gyros.iter().flat_map(|gyro| &gyro.effects);
+    // Of a sound log what any gyro has is false.
+    let gyros = match kind {
+        Kind::Sound => report.gyros.len(),
+        Kind::Step | Kind::Hysteresis => 1,
+    };
+    let all = report.gyros[..gyros].iter().flat_map(|gyro| &gyro.effects);
     let names = |effect: &RateEffect| -> Vec<String> {
         core::iter::once(&effect.name)
             .chain(&effect.alternatives)

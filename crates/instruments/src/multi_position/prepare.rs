@@ -82,7 +82,7 @@ const LARGEST_SCALE_ERROR: f64 = 0.1;
 ///
 /// As [`accel_from_norm`] and [`gyro_from_turns`] where scales are estimated; [`Unfit::Norm`],
 /// [`Unfit::GyroScale`] and [`Unfit::Axes`] where given scales and axes contradict the stops and
-/// the turns between them.
+/// the turns between them; [`Unfit::NoAccelerometers`].
 pub fn prepare(
     log: &Log,
     description: &Description,

@@ -26,7 +26,7 @@ const PLAY_HALVINGS: usize = 4;
 /// Halvings of a quarter of a block in which the instant of a step is sought.
 const HALVINGS: usize = 6;
 
-/// Blocks to either side in which the instant of a step is sought again, once other effects are in the law; the most
+/// Blocks to either side in which the instant of a step is sought again beside the other effects of a law; the most
 /// rounds of that, and the gain of twice the log-likelihood below which a shape stays.
 const NEAR: f64 = 2.0;
 const ROUNDS: usize = 4;
@@ -183,7 +183,7 @@ impl Data<'_> {
     }
 
     /// Gives each effect of a law the shape that is best beside the others: one that was found first had their
-    /// changes in its noise.
+    /// changes in its noise. Alternatives and p-values stay those of the shape that was found.
     fn settle(&self, terms: &mut [RateTerm], found: &mut [Found], start: Variances) -> Option<()> {
         for _ in 0..ROUNDS {
             let variances = self.fit(terms, start, false)?.variances;
@@ -309,7 +309,8 @@ impl<'a> Scores<'a> {
     }
 }
 
-/// Steps at each quarter of the blocks of a log between two times, the first and the last block left out.
+/// Steps at each quarter of the blocks of a log between two times, from the middle of the second block to the end of
+/// the last but one.
 fn quarters(log: usize, blocks: &Blocks, from_s: f64, to_s: f64) -> impl Iterator<Item = RateTerm> {
     let (first_s, block_s) = (blocks.time_s[0], blocks.block_s);
     let last_s = first_s + block_s * (blocks.len() as f64 - 1.5);
