@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 use crate::{
     AllanTest, Coefficients, Estimated, FilterTest, Finding, FindingKind, Gain, MagnitudeTest,
     ModelNoise, NextRun, NoiseAuditSummary, NoiseLevel, NotTested, NotTestedReason, NullDirection,
-    OutputError, Power, RankedEffect, RecordSummary, ResidualTest, ResidualVerdict, Residuals,
-    SetUps, Starts, UndeclaredNoise,
+    OutputError, PathStep, Power, RankedEffect, RecordSummary, ResidualTest, ResidualVerdict,
+    Residuals, SetUps, Starts, UndeclaredNoise,
 };
 
 /// Version of the JSON contract of a diagnosis; it rises when a key changes its meaning or goes
@@ -82,6 +82,10 @@ pub struct Answer {
     /// Effects of a plant that a search in white noise named, and that are not detected beside that noise.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub only_in_white_noise: Vec<String>,
+    /// The way from the nominal model of a plant to that with all findings, with the errors of both in parts of the
+    /// record that were left out of the fit. Empty where what is left is white: the likelihood then judges alone.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub path: Vec<PathStep>,
     /// Noise of the model that the coefficients are of; `None` without a fit, and of a plant.
     pub model_noise: Option<ModelNoise>,
     /// Noise audit of the accelerometers; `None` without a fit.

@@ -42,6 +42,7 @@ mod gain;
 mod limits;
 mod magnitude;
 mod next_run;
+mod path;
 mod read;
 mod records;
 mod residual_test;
@@ -72,6 +73,7 @@ pub use limits::{
 };
 pub use magnitude::MagnitudeTest;
 pub use next_run::{NextRun, NextSigma, ToldApart};
+pub use path::{PathError, PathStep, Refusal};
 pub use read::{read, read_platform, read_platform_text, read_text};
 pub use records::{RecordSize, SizeChoice, SizesByRecord};
 pub use residual_test::{

@@ -335,6 +335,7 @@ fn search_options(
         unmodelled_probability: shares.residual_test / RESIDUAL_TESTS,
         seed: options.seed,
         work_before,
+        names_alone: false,
     }
 }
 

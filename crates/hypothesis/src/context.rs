@@ -26,6 +26,9 @@ pub struct SearchOptions {
     /// Work done on the record before the search, in the unit of [`FittedModel::work`]: where it was much,
     /// the search has a smaller budget.
     pub work_before: u64,
+    /// Whether names are enough, in the order in which they are detected: no other name is tried in their place, and they
+    /// have no sets.
+    pub names_alone: bool,
 }
 
 impl Default for SearchOptions {
@@ -36,6 +39,7 @@ impl Default for SearchOptions {
             unmodelled_probability: 0.001,
             seed: 0,
             work_before: 0,
+            names_alone: false,
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The result for one detected effect: estimates, significance, alternatives.
 
 use gyrocal_scalar::effect::{Effect, EffectKind};
-use nalgebra::DMatrix;
+use nalgebra::{Cholesky, DMatrix, DVector};
 
 use crate::accepted::Accepted;
 use crate::bank::{NominalEstimate, ScoreBank};
@@ -73,7 +73,16 @@ fn evaluate_with<F: FittedModel>(
     let null = NullDistribution::draw(&bank, &hypotheses, draws);
     let mut scores = Scores::of(&bank, &hypotheses, &null, None);
     scores.refine(&stage.fitted, context, &hypotheses, &places.values)?;
-    let statistic = scores.best[own.hypothesis].map_or(0.0, |best| best.statistic);
+    // The score of an effect that the others nearly take up tells nothing; its size in the fit does.
+    let own_score = scores.best[own.hypothesis].get_or_insert_with(|| Best {
+        hypothesis: own.hypothesis,
+        variant: hypotheses[own.hypothesis].variants.len().saturating_sub(1),
+        statistic: of_sizes(&stage.fitted, &places.values),
+        shape: own.shape.unwrap_or_default(),
+        refined: own.shape.is_some(),
+        searched: own.searched,
+    });
+    let statistic = own_score.statistic;
     let reaches = if by_fits {
         let of = (&bank, hypotheses.as_slice());
         fit_rivals(compared, context, of, &mut scores, statistic);
@@ -126,6 +135,17 @@ fn evaluate_with<F: FittedModel>(
         tested,
         better,
     })
+}
+
+/// The squared size of some estimates over the covariance of their errors; zero where they are not determined.
+fn of_sizes<F: FittedModel>(fitted: &F, places: &[usize]) -> f64 {
+    let sizes = places.iter().map(|place| fitted.values()[*place]);
+    let sizes = DVector::from_iterator(places.len(), sizes);
+    let own = fitted
+        .covariance()
+        .select_rows(places)
+        .select_columns(places);
+    Cholesky::new(own).map_or(0.0, |own| own.solve(&sizes).dot(&sizes))
 }
 
 /// The hypotheses that are compared with some `own` of the accepted ones: all but the other accepted ones

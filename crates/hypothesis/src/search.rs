@@ -15,6 +15,7 @@ use crate::pattern::Unmodelled;
 use crate::plant::Plant;
 use crate::rate_noise::RateNoiseFit;
 use crate::reassess::reassess;
+use crate::result::parameters_of;
 use crate::rows::Rows;
 use crate::score::Ranked;
 use crate::score_table::ScoreTable;
@@ -86,13 +87,23 @@ impl<F> Searched<F> {
     /// noise and no part of it.
     #[must_use]
     pub fn extension_with(&self, kept: &[bool]) -> ModelExtension {
+        self.extension_of(kept, &self.unmodelled)
+    }
+
+    /// The same without unmodelled terms.
+    #[must_use]
+    pub fn effects_alone(&self, kept: &[bool]) -> ModelExtension {
+        self.extension_of(kept, &[])
+    }
+
+    fn extension_of(&self, kept: &[bool], unmodelled: &[Unmodelled]) -> ModelExtension {
         let accepted = self.accepted.iter().zip(kept);
         let accepted: Vec<Accepted> = accepted
             .filter(|(_, kept)| **kept)
             .map(|(accepted, _)| accepted.clone())
             .collect();
         let context = (self.plant, &self.set, &self.rows);
-        extension(&self.base, context, &accepted, &self.unmodelled)
+        extension(&self.base, context, &accepted, unmodelled)
     }
 }
 
@@ -162,17 +173,21 @@ pub fn search_from<F: FittedModel>(
     } = first;
     ranking.extend(ranked_walks);
     ranking.sort_by(|a, b| b.statistic.total_cmp(&a.statistic));
-    let mut effects = reassess(
-        &context,
-        &mut state,
-        threshold,
-        &mut walks.rivals,
-        &mut draws,
-    )?;
-    let model = (&state.stage, state.unmodelled.as_slice());
-    add_none_of_these(&context, model, &mut effects, &mut walks.named)?;
-    let effects = effects.into_iter().map(|effect| effect.finding);
-    let findings = effects.chain(walks.named).collect();
+    let findings = if options.names_alone {
+        names(&context, &state)
+    } else {
+        let mut effects = reassess(
+            &context,
+            &mut state,
+            threshold,
+            &mut walks.rivals,
+            &mut draws,
+        )?;
+        let model = (&state.stage, state.unmodelled.as_slice());
+        add_none_of_these(&context, model, &mut effects, &mut walks.named)?;
+        let effects = effects.into_iter().map(|effect| effect.finding);
+        effects.chain(walks.named).collect()
+    };
     let open = open_hypotheses(&context, &state);
     Ok(Searched {
         scores: ScoreTable::of(&state.stage.bank, &open),
@@ -192,6 +207,21 @@ pub fn search_from<F: FittedModel>(
         set: context.set,
         accepted: state.accepted,
     })
+}
+
+/// The effects of a model without what could be in their place.
+fn names<F: FittedModel>(context: &SearchContext<'_>, state: &SearchState<F>) -> Vec<Finding> {
+    let all = state.accepted.iter().enumerate();
+    all.map(|(index, own)| Finding {
+        effect: context.set.hypotheses[own.hypothesis].id(),
+        parameters: parameters_of(&state.stage, &context.set, &state.accepted, index),
+        z: f64::NAN,
+        p_value: None,
+        alternatives: Vec::new(),
+        exact_equivalents: Vec::new(),
+        none_of_these: None,
+    })
+    .collect()
 }
 
 /// Result of the forward selection in white noise.

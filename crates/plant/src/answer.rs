@@ -83,6 +83,7 @@ pub(crate) fn answer(
         noise: noise(plant, fitted)?,
         undeclared_noise: fitted.undeclared_noise()?,
         only_in_white_noise: Vec::new(),
+        path: Vec::new(),
         model_noise: None,
         noise_audit: None,
         allan: None,

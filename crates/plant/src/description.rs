@@ -128,6 +128,14 @@ pub enum Kind {
     Play,
 }
 
+impl Kind {
+    /// Whether it is a function of time alone.
+    #[must_use]
+    pub fn is_of_time(self) -> bool {
+        matches!(self, Self::Ramp | Self::Step)
+    }
+}
+
 /// Part of the model that an effect enters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {

@@ -10,7 +10,7 @@ use crate::cross_validation::cross_validated;
 use crate::diagnosed::Diagnosed;
 use crate::error::PlantError;
 use crate::fitted::FittedPlant;
-use crate::judged::{Judged, searched};
+use crate::judged::{Judged, Standing, standing};
 use crate::loaded::LoadedPlant;
 use crate::prediction::{errors, horizon_s};
 use crate::record::PlantRecord;
@@ -44,13 +44,19 @@ pub(crate) fn diagnose_from(
     } else {
         FittedPlant::nominal_from(plant, first.record().clone(), &held, start)?
     };
+    let later = later.map(Arc::new);
     let selection = nominal.selection()?;
-    let Judged { searched, refused } = searched(nominal, &selection, options, |found| {
+    let Standing {
+        judged: Judged { searched, refused },
+        selection,
+        path,
+    } = standing(&nominal, selection, options, later.as_ref(), |found| {
         Ok(remainder(plant, found)?.verdict != ResidualVerdict::Unexplained)
     })?;
     let mut answer = answer(plant, &searched, &selection, options)?;
     answer.undetermined = directions;
     answer.only_in_white_noise = refused.into_iter().map(str::to_owned).collect();
+    answer.path = path;
     answer.gain = cross_validated(&searched)?;
     let mut series = None;
     if let Some(later) = later {
@@ -71,11 +77,10 @@ pub(crate) fn diagnose_from(
 /// Both models on a later record.
 fn compare(
     searched: &Searched<FittedPlant>,
-    later: PlantRecord,
+    later: Arc<PlantRecord>,
     has_findings: bool,
 ) -> Result<(Validation, RecordSeries), PlantError> {
     let plant = searched.fitted.loaded();
-    let later = Arc::new(later);
     let nominal = searched.nominal.predict(&later)?;
     let extended = searched.fitted.predict(&later)?;
     let rows = 0..later.len();

@@ -230,6 +230,25 @@ impl FittedPlant {
         self.solved(&self.extension, noise, self.solution.at.clone())
     }
 
+    /// The same model fitted to a record of the same rows.
+    pub(crate) fn on_record(&self, record: PlantRecord) -> Result<Self, PlantError> {
+        let problem = Problem {
+            record: Arc::new(record),
+            ..(*self.problem).clone()
+        };
+        let solver = Solver::new(&problem, &self.extension, self.noise.clone());
+        let solution = solver.solve(self.solution.at.clone())?;
+        let (extension, noise) = (self.extension.clone(), self.noise.clone());
+        let starts = self.starts;
+        Ok(Self::of(
+            Arc::new(problem),
+            extension,
+            noise,
+            solution,
+            starts,
+        ))
+    }
+
     fn further(&self, columns: &[Column]) -> Vec<Column> {
         let (states, steps) = self.problem.shape();
         let lines = columns.iter();

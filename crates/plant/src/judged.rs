@@ -3,11 +3,19 @@
 //! What a search in white noise finds is proposed to a second one, in which the levels and correlation times of all
 //! noise are estimated anew in each fit: a name stands if it is detected there. The first is kept where both agree and
 //! its residuals need no more than white noise, or where it has the larger likelihood less a penalty for each term.
+//!
+//! Where what is left is not white, no likelihood is a fair judge of a name: parts that are left out of the fit are, and
+//! the search begins anew without the effects that they refuse.
 
+use std::sync::Arc;
+
+use gyrocal_answer::{PathStep, Refusal};
 use gyrocal_hypothesis::{SearchOptions, Searched, Selection, search, search_from};
 
 use crate::error::PlantError;
 use crate::fitted::FittedPlant;
+use crate::left_out::{UNLISTED, by_parts};
+use crate::record::PlantRecord;
 
 /// Penalties of a term in the comparison of both models, log-likelihood: of an effect what the search of a catalogue of
 /// a hundred makes of nothing in one of a hundred records, and twice that of an unlisted line or curve, which has two
@@ -19,6 +27,94 @@ const OF_UNLISTED: f64 = 18.0;
 fn penalised(of: &Searched<FittedPlant>) -> f64 {
     let (effects, unlisted) = (of.findings.len() as f64, of.unmodelled.len() as f64);
     of.noise.log_likelihood - OF_EFFECT * effects - OF_UNLISTED * unlisted
+}
+
+/// Searches for names among the effects that left-out parts have not refused. If the last still names some that they
+/// refuse, those that stood go on alone.
+const NAMES: usize = 6;
+
+/// What was found, and what left-out parts say of it.
+pub(crate) struct Standing {
+    pub(crate) judged: Judged,
+    /// The effects of the last search.
+    pub(crate) selection: Selection,
+    /// See [`gyrocal_answer::Answer::path`].
+    pub(crate) path: Vec<PathStep>,
+}
+
+/// Searches a record for effects that stand in parts that are left out of the fit, if what they leave is not white.
+///
+/// # Errors
+/// As [`searched`].
+pub(crate) fn standing(
+    nominal: &FittedPlant,
+    mut selection: Selection,
+    options: &SearchOptions,
+    later: Option<&Arc<PlantRecord>>,
+    is_white: impl Fn(&Searched<FittedPlant>) -> Result<bool, PlantError>,
+) -> Result<Standing, PlantError> {
+    let effects = &nominal.loaded().description.effects;
+    let is_of_time = |id: &str| {
+        let mut own = effects.iter();
+        own.any(|own| own.id == id && own.kind.is_of_time())
+    };
+    let mut options = options.clone();
+    let mut nominal_step: Option<PathStep> = None;
+    let mut refused: Vec<PathStep> = Vec::new();
+    let mut refused_gains = Vec::new();
+    let mut searches = 0;
+    loop {
+        // Sets take most of the time: between the first search and the last, names are enough.
+        options.names_alone = (1..=NAMES).contains(&searches);
+        let judged = match options.names_alone {
+            true => search(nominal.clone(), nominal.rows(), &selection, &options)?.into(),
+            false => searched(nominal.clone(), &selection, &options, &is_white)?,
+        };
+        let found = &judged.searched;
+        let is_fair = found.fitted.noise.is_declared() && is_white(found)?;
+        let has_found = !(found.findings.is_empty() && found.unmodelled.is_empty());
+        let path = match is_fair || !has_found {
+            true => Vec::new(),
+            false => by_parts(found, later, &mut refused_gains)?,
+        };
+        let (stand, no_longer): (Vec<PathStep>, Vec<PathStep>) =
+            path.into_iter().partition(|step| step.refused.is_none());
+        let stand = match stand.split_first() {
+            Some((first, effects)) => {
+                nominal_step = Some(first.clone());
+                effects.to_vec()
+            }
+            None => Vec::new(),
+        };
+        if no_longer.is_empty() && options.names_alone {
+            searches = NAMES + 1;
+            continue;
+        }
+        if no_longer.is_empty() {
+            let path = nominal_step.into_iter().chain(stand).chain(refused);
+            return Ok(Standing {
+                path: path.collect(),
+                judged,
+                selection,
+            });
+        }
+        let names = |steps: &[PathStep], id: &str| {
+            let mut own = steps.iter();
+            own.any(|step| step.effect.as_deref() == Some(id))
+        };
+        if names(&no_longer, UNLISTED) {
+            options.unmodelled_probability = 0.0;
+        }
+        let no_time = no_longer
+            .iter()
+            .any(|step| step.refused == Some(Refusal::FunctionsOfTime));
+        selection.effects.retain(|effect| {
+            let is_open = searches < NAMES || names(&stand, effect.id);
+            is_open && !names(&no_longer, effect.id) && !(no_time && is_of_time(effect.id))
+        });
+        refused.extend(no_longer);
+        searches += 1;
+    }
 }
 
 /// What was found.

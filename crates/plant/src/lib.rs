@@ -17,7 +17,7 @@
 //! Records that are joined have a step between them that begins with free states.
 //! Gauss-Newton steps by multiple shooting lead to the fit; noise levels maximise the restricted likelihood.
 //! What a search in white noise finds is judged beside process noise of every rate and correlated noise of every
-//! output.
+//! output. Where what is left is not white, each effect must also simulate parts better that were left out of the fit.
 //!
 //! # Example
 //!
@@ -60,6 +60,7 @@ mod input_errors;
 mod interpreted;
 mod judged;
 mod later_starts;
+mod left_out;
 mod linearised;
 mod lines;
 mod loaded;

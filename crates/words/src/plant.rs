@@ -1,8 +1,10 @@
 //! The answer of a diagnosis of a plant in sentences.
 
 mod noise;
+mod path;
 
 pub use noise::undeclared_noise;
+pub use path::{path, why};
 
 use crate::diagnosis::likelihood;
 use crate::files::joined;
@@ -66,7 +68,11 @@ pub fn facts(answer: &Answer) -> Vec<(&'static str, String)> {
         let off = off(error, has);
         ("open loop", format!("Simulated{horizon}, output {off}."))
     }));
-    all.extend(answer.gain.iter().map(|gain| ("parts", parts(gain))));
+    // A likelihood of noise that is not white says little of left-out parts: simulations do.
+    let gains = answer.gain.iter().filter(|_| answer.path.is_empty());
+    all.extend(gains.map(|gain| ("parts", parts(gain))));
+    let left_out = path(&answer.path).into_iter();
+    all.extend(left_out.map(|words| ("left out", words)));
     all.extend(later_record(answer).map(|words| ("later record", words)));
     let tests = answer.remainder.outputs.iter();
     let rare = tests.filter(|one| is_coloured(one));

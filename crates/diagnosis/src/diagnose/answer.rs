@@ -86,6 +86,7 @@ impl Evidence<'_, '_> {
             noise: noise(self.estimate),
             undeclared_noise: Vec::new(),
             only_in_white_noise: Vec::new(),
+            path: Vec::new(),
             model_noise: Some(model_noise(self.validated, self.nominal)),
             noise_audit: Some(audit(self.audit)),
             allan: self.allan.as_ref().map(allan),

@@ -75,6 +75,7 @@ fn result(record: &Record, options: &DiagnoseOptions, setup: Vec<SetupProblem>) 
         noise: Vec::new(),
         undeclared_noise: Vec::new(),
         only_in_white_noise: Vec::new(),
+        path: Vec::new(),
         model_noise: None,
         noise_audit: None,
         allan: None,

@@ -26,6 +26,7 @@ pub fn of_plant(diagnosed: &Diagnosed, name: &str, manifest: &Manifest) -> Resul
     sections.extend(ranked::section(answer));
     sections.extend(tables::parameters(answer));
     sections.extend(tables::records(answer));
+    sections.extend(tables::path(answer));
     sections.extend(tables::gain(answer, Some(diagnosed)));
     sections.push(over_time::innovations(diagnosed)?);
     sections.push(limits::cannot_tell(answer));
@@ -38,6 +39,7 @@ pub(crate) fn of_answer(answer: &Answer) -> Part {
     sections.extend(ranked::section(answer));
     sections.extend(tables::parameters(answer));
     sections.extend(tables::records(answer));
+    sections.extend(tables::path(answer));
     sections.extend(tables::gain(answer, None));
     sections.push(over_time::tested(answer, None));
     sections.push(limits::cannot_tell(answer));

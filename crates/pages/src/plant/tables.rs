@@ -29,6 +29,40 @@ pub(super) fn sets(answer: &Answer) -> Option<Section> {
     ))
 }
 
+/// The way from the nominal model to that with all findings; `None` where the likelihood judged alone.
+pub(super) fn path(answer: &Answer) -> Option<Section> {
+    let steps = answer.path.iter().flat_map(|step| {
+        let model = step.effect.as_ref();
+        let model = model.map_or_else(
+            || panels::NOMINAL.to_owned(),
+            |effect| format!("+ {effect}"),
+        );
+        let stands = step.refused.map_or("stands", gyrocal_words::plant::why);
+        let row = move |error: &gyrocal_answer::PathError| {
+            [
+                model.clone(),
+                error.output.clone(),
+                rms(error.left_out, &error.unit),
+                error
+                    .later
+                    .map_or_else(String::new, |later| rms(Some(later), &error.unit)),
+                stands.to_owned(),
+            ]
+        };
+        step.outputs.iter().map(row)
+    });
+    let heads = "model | output | > left-out parts, rms | > later record, rms | effect";
+    let table = Table::of(
+        "Each effect beside those before it that stand",
+        heads,
+        steps,
+    );
+    let words =
+        "Open-loop simulations of four parts of the record, each left out of the fit in its turn.";
+    let items = vec![Item::from(table)];
+    (!answer.path.is_empty()).then(|| section("path", "Left-out parts", words, items))
+}
+
 fn set(answer: &Answer, found: &Finding) -> Table {
     let sizes: Vec<String> = found
         .parameters

@@ -6,6 +6,7 @@ mod duffing;
 mod gauge;
 mod generated;
 mod input_errors;
+mod left_out;
 mod next_run;
 mod population;
 mod several;
