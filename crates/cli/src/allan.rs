@@ -21,8 +21,8 @@ use crate::{Failure, Reply};
 ///
 /// Each column is a rate sampled at equal intervals. Confidence intervals of the deviations are those of
 /// NIST SP 1065, with the degrees of freedom of the dominant noise type at each averaging time. The
-/// coefficients are fitted with the covariances of the deviations over averaging times, with 95 %
-/// intervals and a test of fit.
+/// coefficients are fitted to the samples by the likelihood of their cosine transform, beside tones and a
+/// filter, with 95 % intervals and a test of fit.
 #[derive(Debug, Args)]
 pub(crate) struct AllanArguments {
     /// The log (CSV) with a header row, or as its description says.
@@ -56,7 +56,7 @@ pub(crate) struct AllanArguments {
     /// Confidence level of the intervals.
     #[arg(long, value_name = "P", default_value_t = 0.683, value_parser = probability)]
     confidence: f64,
-    /// Estimator of the printed deviations; the coefficients are always fitted to the overlapping ones.
+    /// Estimator of the printed deviations; the coefficients are fitted to the samples.
     #[arg(long, value_name = "ESTIMATOR", default_value = "overlapping")]
     estimator: Estimator,
     /// Write the result for programs (JSON), with the fitted curve and its parts for a plot.

@@ -21,8 +21,7 @@ pub struct AllanSettings {
     pub scale: f64,
     /// Confidence level of the intervals.
     pub confidence: f64,
-    /// Estimator of the printed deviations. The parts of the noise are always fitted to the overlapping
-    /// Allan deviations.
+    /// Estimator of the printed deviations. The parts of the noise are fitted to the samples.
     pub estimator: AllanEstimator,
 }
 
@@ -34,7 +33,7 @@ pub struct AllanColumn {
     pub name: String,
     /// Deviation at each averaging time.
     pub points: Vec<AllanColumnPoint>,
-    /// Parts of the noise; `None` with too few averaging times for a fit.
+    /// Parts of the noise; `None` with too few samples for a fit.
     pub noise: Option<NoiseFit>,
     /// Samples that no noise explains, which deviations and parts leave out; `None` without any.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -50,7 +49,7 @@ pub struct LeftOut {
     pub count: usize,
     /// The first hundred of them.
     pub samples: Vec<BadSample>,
-    /// Parts of the noise with these samples among the others; `None` with too few averaging times for a fit.
+    /// Parts of the noise with these samples among the others; `None` with too few for a fit.
     pub noise_with_them: Option<NoiseFit>,
 }
 
@@ -118,13 +117,17 @@ pub fn allan_columns(
             if values.len() > 1 && values.windows(2).all(|pair| pair[0] == pair[1]) {
                 return Err(constant(source, name));
             }
-            column(name, &values, settings)
+            allan_values(name, &values, settings)
         })
         .collect()
 }
 
 /// Deviations and parts of the values of one column.
-fn column(
+///
+/// # Errors
+///
+/// [`InstrumentError`] for too few samples, and for values that `scale` makes infinite.
+pub fn allan_values(
     name: &str,
     values: &[f64],
     settings: &AllanSettings,
@@ -141,7 +144,7 @@ fn column(
         count => Some(LeftOut {
             count,
             samples: cleaned.told(&values, interval_s),
-            noise_with_them: deviations(&values, interval_s, settings)?.1,
+            noise_with_them: fit_noise(&values, interval_s).ok(),
         }),
     };
     Ok(AllanColumn {
@@ -160,7 +163,6 @@ fn deviations(
 ) -> Result<(Vec<AllanColumnPoint>, Option<NoiseFit>), InstrumentError> {
     let confidence = settings.confidence;
     let averaging = octaves(values.len().max(3));
-    let overlapping = allan_deviation(values, interval_s, &averaging, confidence)?;
     let points = match settings.estimator {
         AllanEstimator::Total => total_deviation(values, interval_s, &averaging, confidence)?,
         AllanEstimator::Hadamard => {
@@ -171,9 +173,9 @@ fn deviations(
                 .collect();
             hadamard_deviation(values, interval_s, &shorter, confidence)?
         }
-        _ => overlapping.clone(),
+        _ => allan_deviation(values, interval_s, &averaging, confidence)?,
     };
-    let noise = fit_noise(&overlapping, values.len()).ok();
+    let noise = fit_noise(values, interval_s).ok();
     Ok((points.iter().map(AllanColumnPoint::from).collect(), noise))
 }
 
@@ -204,7 +206,7 @@ pub fn allan_log(
                     "check the sensor and the logger",
                 ));
             }
-            column(name, &values, &settings)
+            allan_values(name, &values, &settings)
         })
         .collect()
 }

@@ -94,6 +94,7 @@ pub use accel_from_norm::{AccelCalibration, accel_from_norm, refuse_wrong_norm};
 pub use accel_from_positions::{AccelCoefficient, AccelErrors, accel_from_positions};
 pub use allan_analysis::{
     AllanColumn, AllanColumnPoint, AllanReport, AllanSettings, LeftOut, allan_columns, allan_log,
+    allan_values,
 };
 pub use bad_samples::BadSample;
 pub use clock::Clock;

@@ -44,8 +44,8 @@ pub fn of_allan(manifest: &Manifest, report: &AllanReport, clock: Option<&str>) 
     let parts = section(
         "parts",
         "Parts of the noise",
-        "Fitted with the covariances of the deviations over averaging times. The flat part of a bias instability B \
-         is 0.664 B.",
+        "Fitted by the likelihood of the cosine transform of the samples. The flat part of a bias instability B is \
+         0.664 B.",
         parts.collect(),
     );
     let points = report
@@ -112,9 +112,7 @@ fn chart(report: &AllanReport) -> Chart {
 /// The coefficients of a column with their intervals, and the test of fit.
 fn parts(name: &str, noise: Option<&NoiseFit>, unit: &str) -> Vec<Item> {
     let Some(noise) = noise else {
-        return vec![Item::text(format!(
-            "{name}: too few averaging times for a fit."
-        ))];
+        return vec![Item::text(format!("{name}: too few samples for a fit."))];
     };
     let rows = noise.coefficients.iter().map(|one| {
         let (estimate, interval) = match (one.estimate, one.interval) {
@@ -129,24 +127,21 @@ fn parts(name: &str, noise: Option<&NoiseFit>, unit: &str) -> Vec<Item> {
         [one.part.description().to_owned(), estimate, interval, unit]
     });
     let heads = "part | > coefficient | > 95 % interval | unit";
-    let [from_s, to_s] = noise.range_s;
-    let remark = match (noise.correlated_samples, noise.is_described()) {
-        (true, _) => {
-            " The samples are correlated for a short time, as by a filter or dither: shorter averaging times are \
-             left out, and quantisation is not distinguishable from the filter."
-        }
-        (_, true) => "",
-        _ => {
-            " The noise is no sum of these parts at any range of averaging times: no coefficient is determined. \
-             Look for vibration, jumps, or a change of temperature."
+    let remark = match noise.is_described() {
+        true => "",
+        false => {
+            " The noise is no sum of these parts, tones and a filter: no coefficient is determined. Look for \
+             vibration, jumps, or a change of temperature."
         }
     };
     let p = format::p_value(noise.p_value);
+    let besides = screen::besides(Some(noise), unit).into_iter();
+    let besides =
+        besides.map(|(label, words)| format!(" {}: {words}.", gyrocal_words::capitalised(label)));
+    let besides: String = besides.collect();
     vec![
         Table::of(name, heads, rows).into(),
-        Item::text(format!(
-            "{name}: fitted from {from_s:.4} to {to_s:.4} s; test of fit: {p}.{remark}"
-        )),
+        Item::text(format!("{name}: test of fit: {p}.{besides}{remark}")),
     ]
 }
 

@@ -4,19 +4,20 @@
 //! sections 5.2.4 (deviation), 5.3 (confidence intervals), table 5 (degrees of freedom). In its
 //! words a gyro's rate is fractional frequency and its angle is phase.
 
-mod covariance;
-mod draws;
 mod estimators;
 mod fit;
-mod intervals;
-mod least_squares;
+mod held;
+mod likelihood;
 mod noise;
+mod ordinates;
 mod parts;
+mod tones;
 
 pub use estimators::{AllanEstimator, hadamard_deviation, total_deviation};
-pub use fit::{COEFFICIENT_CONFIDENCE, Coefficient, FittedPoint, NoiseFit, fit_noise};
+pub use fit::{Coefficient, FittedPoint, NoiseFit, fit_noise};
 pub use noise::NoiseType;
 pub use parts::NoisePart;
+pub use tones::Tone;
 
 use crate::error::StatisticsError;
 use crate::probability::chi_square_quantile;

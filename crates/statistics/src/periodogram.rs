@@ -146,18 +146,7 @@ fn refine(
     let count = there.len() as f64;
     let power =
         |frequency_hz: f64| sums(frequency_hz).iter().map(|sum| sum * sum).sum::<f64>() / count;
-    const GOLDEN: f64 = 0.618_033_988_749_894_8;
-    let (mut low, mut high) = (near_hz - step_hz, near_hz + step_hz);
-    // Twenty sections narrow the bracket by 1.5e4, far below the sigma of any frequency.
-    for _ in 0..20 {
-        let width = GOLDEN * (high - low);
-        if power(high - width) > power(low + width) {
-            high = low + width;
-        } else {
-            low = high - width;
-        }
-    }
-    let frequency_hz = 0.5 * (low + high);
+    let frequency_hz = highest_near(power, near_hz, step_hz);
     let [cosine, sine] = sums(frequency_hz);
     let power = (cosine * cosine + sine * sine) / count;
     let phase_at_first = atan2(-sine, cosine);
@@ -168,6 +157,22 @@ fn refine(
         phase_rad: (phase_at_first - TAU * frequency_hz * first_s).rem_euclid(TAU),
         p_value: searched.probability(power),
     }
+}
+
+/// The frequency of most power within a step of one, by golden section.
+pub(crate) fn highest_near(power: impl Fn(f64) -> f64, near: f64, step: f64) -> f64 {
+    const GOLDEN: f64 = 0.618_033_988_749_894_8;
+    let (mut low, mut high) = (near - step, near + step);
+    // Twenty sections narrow the bracket by 1.5e4, far below the sigma of any frequency.
+    for _ in 0..20 {
+        let width = GOLDEN * (high - low);
+        if power(high - width) > power(low + width) {
+            high = low + width;
+        } else {
+            low = high - width;
+        }
+    }
+    0.5 * (low + high)
 }
 
 /// The axis with the strongest line of three, and the probability of as strong a one in any of

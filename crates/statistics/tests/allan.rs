@@ -4,7 +4,8 @@
 
 use gyrocal_statistics::StatisticsError;
 use gyrocal_statistics::allan::{
-    NoisePart, NoiseType, allan_deviation, fit_noise, hadamard_deviation, octaves, total_deviation,
+    NoiseFit, NoisePart, NoiseType, allan_deviation, fit_noise, hadamard_deviation, octaves,
+    total_deviation,
 };
 use gyrocal_truth::units::sensor_noise::{Filter, SensorNoise};
 
@@ -190,39 +191,51 @@ fn total_and_hadamard_deviations_are_those_of_the_other_library() {
     assert_eq!(rows, 21);
 }
 
+/// Noise of an angle random walk of one.
+const WHITE: SensorNoise = SensorNoise {
+    quantisation: 0.0,
+    random_walk: 1.0,
+    bias_instability: 0.0,
+    rate_random_walk: 0.0,
+    filter: Filter::None,
+};
+
+fn assert_in_interval(fit: &NoiseFit, part: NoisePart, truth: f64) {
+    let found = fit.coefficient(part).unwrap();
+    let [low, high] = found.interval.unwrap();
+    assert!(
+        low < truth && truth < high && high < 1.5 * truth,
+        "{found:?}"
+    );
+}
+
 #[test]
 fn coefficients_of_known_noise_are_in_their_intervals() {
     let noise = SensorNoise {
         quantisation: 2.0,
-        random_walk: 1.0,
         bias_instability: 0.1,
         rate_random_walk: 1e-3,
-        filter: Filter::None,
+        ..WHITE
     };
-    let fitted = |noise: SensorNoise, interval_s: f64| {
-        let rates = noise.rates(40_000, 3);
-        let points = allan_deviation(&rates, interval_s, &octaves(rates.len()), 0.95).unwrap();
-        fit_noise(&points, rates.len()).unwrap()
-    };
-    let fit = fitted(noise, 1.0);
+    let rates = noise.rates(40_000, 3);
+    let fit = fit_noise(&rates, 1.0).unwrap();
     let truth = [2.0, 1.0, 0.1, 1e-3];
     for (part, truth) in NoisePart::ALL.into_iter().zip(truth) {
         let found = fit.coefficient(part).unwrap();
         let [low, high] = found.interval.unwrap();
         assert!(low < truth && truth < high, "{found:?}");
     }
-    assert!(fit.p_value > 0.05 && !fit.correlated_samples && fit.is_described());
+    assert!(fit.is_described() && fit.tones.is_empty() && fit.filter_corner_hz.is_none());
+    assert!(fit.not_explained_s.is_empty() && fit.samples_per_value.is_none());
     // The parts of the curve add to it.
     for point in &fit.curve {
-        let sum: f64 = point.parts.iter().map(|part| part * part.abs()).sum();
+        let sum: f64 = point.parts.iter().map(|part| part * part).sum();
         assert!((sum.sqrt() / point.deviation - 1.0).abs() < 1e-9);
     }
     // The same samples ten times a second: the units of time follow.
-    let faster = fitted(noise, 0.1);
+    let faster = fit_noise(&rates, 0.1).unwrap();
     let ratio = |part: NoisePart| {
-        let of = |fit: &gyrocal_statistics::allan::NoiseFit| {
-            fit.coefficient(part).unwrap().estimate.unwrap()
-        };
+        let of = |fit: &NoiseFit| fit.coefficient(part).unwrap().estimate.unwrap();
         of(&faster) / of(&fit)
     };
     assert!((ratio(NoisePart::Quantisation) - 0.1).abs() < 1e-9);
@@ -233,41 +246,81 @@ fn coefficients_of_known_noise_are_in_their_intervals() {
 #[test]
 fn a_filter_is_told_and_does_not_spoil_the_random_walk() {
     let noise = SensorNoise {
-        quantisation: 0.0,
-        random_walk: 1.0,
         bias_instability: 0.05,
-        rate_random_walk: 0.0,
         filter: Filter::Lag(4.0),
+        ..WHITE
     };
-    let rates = noise.rates(40_000, 4);
-    let points = allan_deviation(&rates, 1.0, &octaves(rates.len()), 0.95).unwrap();
-    let fit = fit_noise(&points, rates.len()).unwrap();
-    assert!(fit.correlated_samples && fit.range_s[0] > 4.0, "{fit:?}");
-    let found = fit.coefficient(NoisePart::RandomWalk).unwrap();
-    let [low, high] = found.interval.unwrap();
-    assert!(low < 1.0 && 1.0 < high && high < 1.5, "{found:?}");
-    assert_eq!(
-        fit.coefficient(NoisePart::Quantisation).unwrap().estimate,
-        None
+    let fit = fit_noise(&noise.rates(40_000, 9), 0.1).unwrap();
+    // A lag of four samples: half the power where 2 sin(π f) is exp(1 / 8) - exp(-1 / 8), at 0.4 Hz. Flicker and few
+    // ordinates below it leave a fifth.
+    let corner_hz = fit.filter_corner_hz.unwrap();
+    assert!((corner_hz / 0.4 - 1.0).abs() < 0.2, "{corner_hz}");
+    assert_in_interval(&fit, NoisePart::RandomWalk, 0.1_f64.sqrt());
+    let quantisation = fit.coefficient(NoisePart::Quantisation).unwrap();
+    assert_eq!(quantisation.estimate, None);
+    // The curve is that of what passes the filter.
+    let [open, behind] = [fit.curve[0].parts[1], fit.curve[0].deviation];
+    assert!(behind < 0.2 * open, "{behind} {open}");
+}
+
+#[test]
+fn tones_are_told_with_their_size() {
+    let mut rates = WHITE.rates(20_000, 5);
+    for (row, rate) in rates.iter_mut().enumerate() {
+        *rate += 3.0 * (0.7 * row as f64).sin() + 0.2 * (0.01 * row as f64).cos();
+    }
+    let fit = fit_noise(&rates, 0.5).unwrap();
+    assert_in_interval(&fit, NoisePart::RandomWalk, 0.5_f64.sqrt());
+    assert!(fit.is_described(), "{fit:?}");
+    let truth = [(3.0, 0.7), (0.2, 0.01)];
+    assert_eq!(fit.tones.len(), truth.len());
+    for (tone, (amplitude, turn)) in fit.tones.iter().zip(truth) {
+        let [low, high] = tone.interval;
+        assert!(low < amplitude && amplitude < high, "{tone:?}");
+        // Four standard deviations.
+        let off_hz = tone.frequency_hz - 2.0 * turn / core::f64::consts::TAU;
+        assert!(off_hz.abs() < 4.0 * tone.frequency_sigma_hz, "{tone:?}");
+    }
+}
+
+#[test]
+fn values_that_are_held_are_taken_once() {
+    let rates = WHITE.rates(5000, 6);
+    let held: Vec<f64> = (0..20_000).map(|row| rates[row / 4]).collect();
+    let fit = fit_noise(&held, 0.25).unwrap();
+    assert_eq!(fit.samples_per_value, Some(4.0));
+    assert_in_interval(&fit, NoisePart::RandomWalk, 1.0);
+}
+
+#[test]
+fn what_is_no_such_noise_is_told_with_its_averaging_times() {
+    // Noise of a resonance at 0.05 Hz.
+    let mut rates = WHITE.rates(20_000, 7);
+    let mut state = [0.0; 2];
+    for (row, drive) in WHITE.rates(20_000, 8).into_iter().enumerate() {
+        let next = 2.0 * 0.9 * (0.1 * core::f64::consts::PI).cos() * state[0] - 0.81 * state[1];
+        state = [next + 0.3 * drive, state[0]];
+        rates[row] += state[0];
+    }
+    let fit = fit_noise(&rates, 1.0).unwrap();
+    assert!(!fit.is_described(), "{fit:?}");
+    assert!(
+        fit.coefficients
+            .iter()
+            .all(|one| one.estimate.is_none() && one.interval.is_none())
+    );
+    // It counts most in the Allan deviation at 0.37 / 0.05 Hz.
+    let holds = |[from, to]: &[f64; 2]| (*from..*to).contains(&7.4);
+    assert!(
+        fit.not_explained_s.iter().any(holds),
+        "{:?}",
+        fit.not_explained_s
     );
 }
 
 #[test]
-fn a_line_of_vibration_is_not_taken_for_quantisation() {
-    let noise = SensorNoise {
-        quantisation: 0.0,
-        random_walk: 1.0,
-        bias_instability: 0.0,
-        rate_random_walk: 0.0,
-        filter: Filter::None,
-    };
-    let mut rates = noise.rates(20_000, 5);
-    for (row, rate) in rates.iter_mut().enumerate() {
-        *rate += 3.0 * (0.7 * row as f64).sin();
-    }
-    let points = allan_deviation(&rates, 1.0, &octaves(rates.len()), 0.95).unwrap();
-    let fit = fit_noise(&points, rates.len()).unwrap();
-    // A line of vibration: it is left out with the shortest averaging times, or nothing is given.
-    assert!(fit.correlated_samples || fit.coefficients.iter().all(|c| c.estimate.is_none()));
-    assert!(fit_noise(&points[..4], rates.len()).is_err());
+fn what_has_no_noise_to_fit_is_refused() {
+    assert!(fit_noise(&WHITE.rates(47, 1), 1.0).is_err());
+    assert!(fit_noise(&[2.0; 1000], 1.0).is_err());
+    assert!(fit_noise(&[f64::NAN; 1000], 1.0).is_err());
 }

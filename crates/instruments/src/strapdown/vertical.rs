@@ -4,7 +4,7 @@
 //! alone. The mean rate along mean specific force tells it directly, with the noise of the gyros over the
 //! whole record, if the unit does not rock: rocking is a rate that noise does not describe.
 
-use gyrocal_statistics::allan::{NoiseFit, NoisePart, allan_deviation, fit_noise, octaves};
+use gyrocal_statistics::allan::{NoiseFit, NoisePart, fit_noise};
 use nalgebra::Vector3;
 
 use crate::earth_rate::deg_per_h;
@@ -18,7 +18,6 @@ pub(super) fn projected(
     level_sigma_rad: f64,
     horizontal_deg_per_h: f64,
 ) -> Option<[f64; 2]> {
-    const CONFIDENCE: f64 = 0.95;
     let force = log.force().ok()?;
     let sum: Vector3<f64> = force.iter().map(|force| Vector3::from(*force)).sum();
     let up = sum.normalize();
@@ -27,9 +26,11 @@ pub(super) fn projected(
         .iter()
         .map(|rate| deg_per_h(up.dot(&Vector3::from(*rate))))
         .collect();
-    let averaging = octaves(rates.len());
-    let points = allan_deviation(&rates, log.interval_s, &averaging, CONFIDENCE).ok()?;
-    let fit = fit_noise(&points, rates.len()).ok()?;
+    let fit = fit_noise(&rates, log.interval_s).ok()?;
+    // A unit that rocks.
+    if !fit.tones.is_empty() {
+        return None;
+    }
     let duration_s = log.interval_s * rates.len() as f64;
     let variance = mean_variance(&fit, duration_s)?;
     let mean = rates.iter().sum::<f64>() / rates.len() as f64;

@@ -15,11 +15,15 @@ const SAMPLES_SHOWN: usize = 3;
 /// The parts of the noise of each column, and whether they describe it.
 pub(super) fn first(report: &AllanReport, clock: Option<&str>) -> Screen {
     let columns = &report.columns;
-    let described = |noise: &Option<NoiseFit>| noise.as_ref().is_some_and(NoiseFit::is_described);
-    let good = columns.iter().filter(|column| described(&column.noise));
-    let good = good.count();
+    let fits = || columns.iter().filter_map(|column| column.noise.as_ref());
+    let good = fits().filter(|noise| noise.is_described()).count();
     let all = columns.len();
-    let parts_of = "white noise, flicker and random walks";
+    let tones: usize = fits().map(|noise| noise.tones.len()).sum();
+    let filtered = fits().any(|noise| noise.filter_corner_hz.is_some());
+    let mut what = vec!["white noise, flicker and random walks".to_owned()];
+    what.extend((tones > 0).then(|| counted(tones, "tone")));
+    what.extend(filtered.then(|| "a filter".to_owned()));
+    let parts_of = joined(what, ", ");
     let mut screen = if good == all {
         let what = format!("by {parts_of}, in all of {}", counted(all, "column"));
         Screen::new(Standing::Good, "NOISE EXPLAINED", what)
@@ -38,6 +42,9 @@ pub(super) fn first(report: &AllanReport, clock: Option<&str>) -> Screen {
     }
     for column in columns.iter().take(COLUMNS_SHOWN) {
         screen.fact(&column.name, parts(column.noise.as_ref(), &report.unit));
+        for (label, words) in besides(column.noise.as_ref(), &report.unit) {
+            screen.fact(label, words);
+        }
         if let Some(left_out) = &column.left_out {
             screen.fact("left out", bad_samples(left_out, &report.unit));
         }
@@ -54,7 +61,7 @@ pub(super) fn first(report: &AllanReport, clock: Option<&str>) -> Screen {
         screen.fact("and", format!("{more} more columns"));
     }
     if good < all {
-        let words = "vibration, jumps, a change of temperature, or too short a log";
+        let words = "vibration, jumps, or a change of temperature";
         screen.fact("may be", words);
     }
     let words = "95 %; the flat part of a bias instability B is 0.664 B";
@@ -81,9 +88,46 @@ pub(super) fn bad_samples(left_out: &LeftOut, unit: &str) -> String {
     )
 }
 
+/// What else a column holds, and where its noise is not explained; each with a label.
+pub(super) fn besides(noise: Option<&NoiseFit>, unit: &str) -> Vec<(&'static str, String)> {
+    let Some(noise) = noise else {
+        return Vec::new();
+    };
+    let mut facts = Vec::new();
+    if !noise.tones.is_empty() {
+        let each = noise.tones.iter().map(|tone| {
+            let [low, high] = tone.interval.map(|end| format::short(end, 3));
+            let (frequency, amplitude) = (tone.frequency_hz, format::short(tone.amplitude, 3));
+            let frequency = format::short(frequency, 4);
+            format!("{frequency} Hz, amplitude {amplitude} ({low} to {high}) {unit}")
+        });
+        facts.push(("tone", joined(each, "; ")));
+    }
+    facts.extend(noise.filter_corner_hz.map(|corner| {
+        let corner = format::short(corner, 3);
+        (
+            "filter",
+            format!("half of the power at {corner} Hz; quantisation is not told behind it"),
+        )
+    }));
+    facts.extend(noise.samples_per_value.map(|each| {
+        let each = format::short(each, 3);
+        ("held", format!("each value for {each} samples; taken once"))
+    }));
+    if !noise.is_described() {
+        let each = noise.not_explained_s.iter().map(|octave| {
+            let [from, to] = octave.map(|end| format::short(end, 2));
+            format!("{from} to {to}")
+        });
+        let words = joined(each, ", ");
+        facts.push(("not explained", format!("at averaging times of {words} s")));
+    }
+    facts
+}
+
 fn parts(noise: Option<&NoiseFit>, unit: &str) -> String {
     let Some(noise) = noise else {
-        return "too few averaging times for a fit".to_owned();
+        return "too few samples for a fit".to_owned();
     };
     let each = noise.coefficients.iter().filter_map(|coefficient| {
         let part = coefficient.part;

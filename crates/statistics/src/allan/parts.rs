@@ -1,10 +1,10 @@
-//! Parts of a noise: their Allan variances and their generalised covariances.
+//! Parts of a noise: their Allan variances and their spectral densities.
 
 use core::f64::consts::{LN_2, PI};
 
 use serde::Serialize;
 
-use crate::math::ln;
+use crate::math::{exp, ln, sin};
 
 /// A part of the noise of a rate, by the slope of its Allan deviation (IEEE Std 952, annex C).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -92,11 +92,60 @@ impl NoisePart {
             Self::RateRandomWalk => t * t * t / 12.0,
         }
     }
+
+    /// Two-sided spectral density of the means over samples of one second, for a coefficient of one, at a
+    /// frequency between zero and one half. That of quantisation is without its ends: see [`super::ordinates`].
+    pub(super) fn density(self, frequency: f64) -> f64 {
+        let square = sin(PI * frequency).powi(2);
+        match self {
+            Self::Quantisation => 4.0 * square,
+            Self::RandomWalk => 1.0,
+            Self::BiasInstability => {
+                // The mean over a sample, and all frequencies that sampling folds onto this one.
+                let cube = |from_whole: f64| exp(-3.0 * ln(from_whole));
+                let folded: f64 = (1..=FOLDED)
+                    .map(|j| cube(f64::from(j) - frequency) + cube(f64::from(j) + frequency))
+                    .sum();
+                let rest = (f64::from(FOLDED) + 0.5).powi(-2);
+                square * (cube(frequency) + folded + rest) / (2.0 * PI.powi(3))
+            }
+            // A walk changes within a sample too: increments of its means have the variance 2/3 and the
+            // covariance 1/6.
+            Self::RateRandomWalk => 0.25 / square - 1.0 / 6.0,
+        }
+    }
 }
+
+/// Pairs of folded frequencies that are summed one by one; the rest is an integral.
+const FOLDED: i32 = 4;
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// The Allan variance is the integral of the density times its transfer function.
+    #[test]
+    fn densities_give_the_allan_variances() {
+        const STEPS: u32 = 400_000;
+        for part in NoisePart::ALL {
+            for averaging in [1.0, 7.0, 64.0] {
+                // Squares of the fractions: many points where flicker and walk have their variance.
+                let step = |i: u32| 0.5 * (f64::from(i) / f64::from(STEPS)).powi(2);
+                let at = |f: f64| {
+                    let both = sin(PI * averaging * f).powi(2) / (averaging * sin(PI * f));
+                    part.density(f) * both * both
+                };
+                let sum = (0..STEPS).map(|i| {
+                    let (from, to) = (step(i), step(i + 1));
+                    at(0.5 * (from + to)) * (to - from)
+                });
+                let variance = 4.0 * sum.sum::<f64>();
+                // The rest of the folded frequencies of flicker is good to 1e-4 of it.
+                let ratio = variance / part.variance(averaging);
+                assert!((ratio - 1.0).abs() < 1e-4, "{part:?} {averaging} {ratio}");
+            }
+        }
+    }
 
     /// The variance of one second difference of the angle over 2 τ² is the Allan variance.
     #[test]
