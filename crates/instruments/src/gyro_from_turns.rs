@@ -43,7 +43,8 @@ struct Turn {
 }
 
 /// Estimates scales and alignment of the gyros from the turns between stops, with specific force
-/// `forces_g` at each stop. The zero of a turn is that of the stops around it.
+/// `forces_g` at each stop. The zero of a turn is that of the stops around it. A turn in which a gyro is at the end of its
+/// range is left out.
 ///
 /// # Errors
 ///
@@ -112,7 +113,13 @@ pub fn gyro_from_turns(
 
 fn turns(log: &Log, stops: &[StopMeans], forces_g: &[[f64; 3]]) -> Vec<Turn> {
     let pairs = stops.windows(2).zip(forces_g.windows(2));
+    let is_within_range = |stops: &[StopMeans]| {
+        let (from, to) = (stops[0].samples.end, stops[1].samples.start);
+        let mut stretches = log.saturated.iter().map(|one| &one.samples);
+        stretches.all(|samples| samples.end <= from || to <= samples.start)
+    };
     pairs
+        .filter(|(stops, _)| is_within_range(stops))
         .map(|(stops, forces_g)| {
             let (from, to) = (&stops[0], &stops[1]);
             let samples = from.samples.end..to.samples.start;

@@ -98,10 +98,11 @@ pub use allan_analysis::{
 pub use bad_samples::BadSample;
 pub use clock::Clock;
 pub use columns::{Columns, read_columns, read_described};
+pub use covariates::Saturated;
 pub use description::Description;
 pub use error::{InstrumentError, Unfit};
 pub use gyro_from_turns::{GyroCalibration, gyro_from_turns};
-pub use log::Log;
+pub use log::{BadSamples, Log};
 pub use platform_average::{AveragedRecordFile, LONGEST_STREAMED_S, average_file};
 pub use platform_record::{parse_record, read_any, read_record};
 pub use proposal::propose_map;

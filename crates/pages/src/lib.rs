@@ -27,6 +27,7 @@
 //! It reads and writes no files, fits nothing, and knows nothing of HTML.
 
 mod allan;
+mod bad_samples;
 mod calibration;
 mod characterise;
 mod diagnosis;

@@ -10,5 +10,6 @@ mod gyro_axes;
 mod logs;
 mod multi_position;
 mod rates;
+mod spoiled;
 mod strapdown;
 mod typed_files;
