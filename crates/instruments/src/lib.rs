@@ -63,6 +63,7 @@ mod date_time;
 pub mod description;
 mod earth_rate;
 mod error;
+mod fast_noise;
 pub mod file_format;
 mod gyro_from_turns;
 mod interval_noise;

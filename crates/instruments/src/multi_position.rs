@@ -19,6 +19,7 @@ mod report;
 mod result;
 mod saturated_turns;
 mod search;
+mod signs;
 mod stop_parts;
 mod terms;
 

@@ -24,7 +24,7 @@ pub use report::{GyroRates, RateCoefficient, RateEffect, RateNoise, RateReport};
 
 use crate::accel_from_norm::refuse_wrong_norm;
 use crate::description::Description;
-use crate::earth_rate::{deg_per_h, earth_deg_per_h};
+use crate::earth_rate::{deg_per_h, earth_deg_per_h, is_against};
 use crate::error::{InstrumentError, Unfit};
 use crate::log::{Log, of_logs};
 use blocks::Blocks;
@@ -91,7 +91,10 @@ pub fn evaluate_rates(
         .map(|log| Blocks::of(log, count, axis, vertical))
         .collect();
     let blocks = blocks?;
-    refuse_wrong_norm(logs.iter().filter_map(mean_norm_g))?;
+    let norms_g: Vec<f64> = logs.iter().filter_map(mean_norm_g).collect();
+    if !norms_g.is_empty() {
+        refuse_wrong_norm(norms_g.into_iter())?;
+    }
     let level_sigma_rad = settings.level_sigma_deg.to_radians();
     let mut laws = Vec::with_capacity(3);
     for gyro in 0..3 {
@@ -119,7 +122,11 @@ pub fn evaluate_rates(
     let logs: Vec<LogRates> = logs.iter().zip(&blocks).map(of_log).collect();
     Ok(RateReport {
         bad_samples,
-        earth_is_reversed: earth.is_some() && logs.iter().any(|log| is_reversed(log, vertical)),
+        earth_is_reversed: earth.is_some()
+            && logs.iter().any(|log| {
+                let rate = log.vertical_deg_per_h;
+                rate.and_then(|rate| is_against(rate, vertical)) == Some(true)
+            }),
         logs,
         gyros: laws
             .iter()
@@ -131,17 +138,6 @@ pub fn evaluate_rates(
         time_and_temperature: correlation,
         time_is_temperature: correlation.is_some_and(|r| r.abs() >= TOGETHER),
     })
-}
-
-/// Whether a log turns about the vertical as the Earth does, the other way round.
-fn is_reversed(log: &LogRates, earth_deg_per_h: f64) -> bool {
-    /// Share of Earth rate that tilt and scale may take.
-    const OF_EARTH: f64 = 0.02;
-    let Some([rate, sigma]) = log.vertical_deg_per_h else {
-        return false;
-    };
-    let off = (3.0 * sigma).max(OF_EARTH * earth_deg_per_h.abs());
-    10.0 * sigma < earth_deg_per_h.abs() && (rate + earth_deg_per_h).abs() < off
 }
 
 /// Outputs of a gyro less the rate of the table and the vertical part of Earth rate \[deg/h\].

@@ -42,6 +42,7 @@ mod plant;
 mod ranked;
 mod rates;
 mod read;
+mod signs;
 mod tumble;
 mod uncertainty;
 mod unlisted;

@@ -10,7 +10,7 @@ use crate::accel_from_norm::{accel_from_norm, refuse_wrong_norm};
 use crate::accel_from_positions::{AccelErrors, accel_from_positions};
 use crate::description::Description;
 use crate::error::{InstrumentError, Unfit};
-use crate::gyro_from_turns::{GyroCalibration, gyro_from_turns};
+use crate::gyro_from_turns::{GyroCalibration, gyro_from_turns, refuse_axes_of_few_turns};
 use crate::log::{BadSamples, Log, of_logs};
 use crate::stop_means::{StopMeans, stop_means};
 
@@ -197,7 +197,10 @@ fn prepare_means(
     let turns = match from_turns.transpose() {
         Ok(turns) => turns,
         // A given scale needs no turns.
-        Err(error) if !log.gyro_in_counts && has_too_few_turns(&error) => None,
+        Err(error) if !log.gyro_in_counts && has_too_few_turns(&error) => {
+            refuse_axes_of_few_turns(log, &stops, &forces_g)?;
+            None
+        }
         Err(error) => return Err(error),
     };
     let outputs_per_rad_per_s = match &turns {

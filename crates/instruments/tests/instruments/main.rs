@@ -7,6 +7,7 @@ mod dialect_set;
 mod dialects;
 mod few_positions;
 mod gyro_axes;
+mod laser;
 mod logs;
 mod multi_position;
 mod rates;

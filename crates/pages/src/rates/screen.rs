@@ -8,6 +8,7 @@ use gyrocal_words::{counted, few};
 
 use crate::bad_samples::left_out;
 use crate::origin::named;
+use crate::signs::against_the_earth;
 
 /// Effects that are told one by one.
 const EFFECTS_SHOWN: usize = 4;
@@ -31,16 +32,7 @@ pub(super) fn first(logs: &[Input], report: &RateReport) -> Screen {
         ),
     };
     if report.earth_is_reversed {
-        screen = Screen::new(
-            Standing::Bad,
-            "CHECK SIGNS",
-            "the unit turns about the vertical against the Earth, at its rate",
-        );
-        screen.fact(
-            "check first",
-            "signs and axes of gyros and of accelerometers, sign of the latitude; or the bias about the vertical is twice \
-             Earth rate by chance",
-        );
+        screen = against_the_earth();
     }
     for (effect, coefficient) in found.iter().take(EFFECTS_SHOWN) {
         let estimate = format::estimate(coefficient.estimate, coefficient.sigma).join(" ± ");

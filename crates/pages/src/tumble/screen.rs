@@ -8,6 +8,7 @@ use gyrocal_words::{counted, few, joined};
 use super::TumbleAnswer;
 use crate::bad_samples::left_out;
 use crate::origin::named;
+use crate::signs::against_the_earth;
 
 /// Terms that are told one by one.
 const TERMS_SHOWN: usize = 6;
@@ -23,6 +24,11 @@ pub(super) fn first(answer: &TumbleAnswer<'_>) -> Screen {
     }
     if let Some(report) = &result.few_positions {
         screen = few_positions(report);
+    }
+    if result.earth_is_reversed {
+        let law = screen;
+        screen = against_the_earth();
+        screen.facts.extend(law.facts);
     }
     if result
         .few_positions
