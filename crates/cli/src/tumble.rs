@@ -128,7 +128,7 @@ fn log_with_stops(
     path: &Path,
     description: &Description,
 ) -> Result<(Log, Vec<Range<usize>>), InstrumentError> {
-    let log = Log::read(path, description)?;
+    let log = Log::read_for_stops(path, description)?;
     let stops = match &arguments.stop[..] {
         [] => find_stops(&log, &stop_settings(arguments))?,
         given => given_stops(&log, given)?,

@@ -11,6 +11,10 @@ const WINDOW: usize = 11;
 /// outermost of six samples, and filtered noise is near its median: six would take one log of sixty for wrong.
 const FAR: f64 = 8.0;
 
+/// Deviation beyond which it stands out of the samples about it, in their own robust standard deviations: of motion, the
+/// samples at the height of a bump deviate by one to two of these.
+const BESIDE: f64 = 4.0;
+
 /// Share of the samples above which wild values are the noise of this sensor.
 const LARGEST_SHARE: f64 = 0.01;
 
@@ -25,7 +29,7 @@ pub struct BadSample {
     pub sample: usize,
     /// Its time after the first sample \[s\].
     pub time_s: f64,
-    /// Its value, in the unit of the scaled values.
+    /// Its value, in the unit of the answer.
     pub value: f64,
 }
 
@@ -38,12 +42,25 @@ pub(crate) struct WithoutBadSamples {
 
 impl WithoutBadSamples {
     pub(crate) fn of(values: &[f64]) -> Self {
+        Self::in_rows_of_at_most(values.len(), values)
+    }
+
+    /// The same where more than so many in a row may be a motion.
+    pub(crate) fn in_rows_of_at_most(most: usize, values: &[f64]) -> Self {
         let medians = running_median(values);
         let off = |place: usize| (values[place] - medians[place]).abs();
         let mut sizes: Vec<f64> = (0..values.len()).map(off).collect();
         let limit = FAR * robust_sigma(&mut sizes);
-        let mut places: Vec<usize> = (0..values.len())
-            .filter(|place| off(*place) > limit)
+        let stands_out = |place: &usize| {
+            off(*place) > limit
+                && off(*place) > BESIDE * scale_about(values, *place, medians[*place])
+        };
+        let found: Vec<usize> = (0..values.len()).filter(stands_out).collect();
+        let rows = found.chunk_by(|one, next| one + 1 == *next);
+        let mut places: Vec<usize> = rows
+            .filter(|row| row.len() <= most)
+            .flatten()
+            .copied()
             .collect();
         // A sensor whose values hardly ever change has no scale that could tell.
         if limit == 0.0 || places.len() as f64 > (LARGEST_SHARE * values.len() as f64).max(1.0) {
@@ -70,6 +87,17 @@ impl WithoutBadSamples {
             })
             .collect()
     }
+}
+
+/// Robust standard deviation about `median` of the samples about one.
+fn scale_about(values: &[f64], place: usize, median: f64) -> f64 {
+    let about = place.saturating_sub(WINDOW / 2)..values.len().min(place + WINDOW / 2 + 1);
+    let others = about.filter(|other| *other != place);
+    robust_sigma(
+        &mut others
+            .map(|other| (values[other] - median).abs())
+            .collect::<Vec<f64>>(),
+    )
 }
 
 /// Median of the samples about each.
@@ -115,6 +143,32 @@ mod tests {
                 .map(|rate| (rate / step).round() * step)
                 .collect();
             assert_eq!(bad(&coarse), 0, "{seed}");
+        }
+    }
+
+    #[test]
+    fn turns_are_no_bad_samples() {
+        let noise = SensorNoise {
+            random_walk: 30.0,
+            ..SensorNoise::default()
+        };
+        // Turns that last 6 to 40 samples, in the sine of half a period or of a whole one.
+        for samples in 6..40 {
+            let mut values = noise.rates(4000, samples as u64);
+            for first in (100..3900).step_by(300) {
+                for at in 0..samples {
+                    let phase = core::f64::consts::PI * at as f64 / samples as f64;
+                    let rate = [phase.sin(), (2.0 * phase).sin()][samples % 2];
+                    values[first + at] += 1e5 * rate;
+                }
+            }
+            let mut wild = values.clone();
+            let bad = |values: &[f64]| WithoutBadSamples::in_rows_of_at_most(2, values).places;
+            assert!(bad(&values).is_empty(), "{samples}");
+            // At rest and at the height of a turn.
+            wild[60] += 1e3;
+            wild[700 + samples / 2] += 1e6;
+            assert_eq!(bad(&wild), [60, 700 + samples / 2], "{samples}");
         }
     }
 

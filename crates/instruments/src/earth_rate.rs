@@ -12,3 +12,13 @@ pub(crate) fn earth_deg_per_h(latitude_deg: f64) -> [f64; 2] {
 pub(crate) fn deg_per_h(rad_per_s: f64) -> f64 {
     rad_per_s.to_degrees() * 3600.0
 }
+
+/// Whether a rate about specific force with its standard deviation \[deg/h\] is that of an Earth that turns the other way
+/// round; `None` if it does not tell.
+pub(crate) fn is_against([rate, sigma]: [f64; 2], vertical_deg_per_h: f64) -> Option<bool> {
+    /// Share of Earth rate that tilt and scale may take.
+    const OF_EARTH: f64 = 0.02;
+    let earth = vertical_deg_per_h.abs();
+    let off = (3.0 * sigma).max(OF_EARTH * earth);
+    (10.0 * sigma < earth).then_some((rate + vertical_deg_per_h).abs() < off)
+}

@@ -2,6 +2,7 @@
 //! from one stop to the next.
 
 use gyrocal_record::AXES;
+use gyrocal_statistics::root_mean_square;
 use nalgebra::{DMatrix, Matrix3, UnitQuaternion, Vector3};
 
 use crate::error::{InstrumentError, Unfit};
@@ -43,7 +44,8 @@ struct Turn {
 }
 
 /// Estimates scales and alignment of the gyros from the turns between stops, with specific force
-/// `forces_g` at each stop. The zero of a turn is that of the stops around it.
+/// `forces_g` at each stop. The zero of a turn is that of the stops around it. A turn in which a gyro is at the end of its
+/// range is left out.
 ///
 /// # Errors
 ///
@@ -110,9 +112,42 @@ pub fn gyro_from_turns(
     })
 }
 
+/// Refuses axes and signs that too few turns for a calibration contradict: with the given scale they leave gravity
+/// unexplained, which axes in another order or of another sign explain.
+///
+/// # Errors
+///
+/// [`Unfit::Axes`].
+pub(crate) fn refuse_axes_of_few_turns(
+    log: &Log,
+    stops: &[StopMeans],
+    forces_g: &[[f64; 3]],
+) -> Result<(), InstrumentError> {
+    /// Gravity left unexplained, rms of a component, by axes that are wrong, and by right ones: a turn by a right
+    /// angle the wrong way leaves 0.8.
+    const WRONG_G: f64 = 0.3;
+    const RIGHT_G: f64 = 0.05;
+    let turns = turns(log, stops, forces_g);
+    let rms_g = |matrix: &Matrix3<f64>| root_mean_square(residuals(&turns, matrix));
+    if turns.is_empty() || rms_g(&Matrix3::identity()) < WRONG_G {
+        return Ok(());
+    }
+    let axes = orders_and_signs().map(|axes| (rms_g(&axes), axes));
+    match axes.min_by(|a, b| a.0.total_cmp(&b.0)) {
+        Some((rms_g, axes)) if rms_g < RIGHT_G => refuse_axes(&axes, &axes.transpose()),
+        _ => Ok(()),
+    }
+}
+
 fn turns(log: &Log, stops: &[StopMeans], forces_g: &[[f64; 3]]) -> Vec<Turn> {
     let pairs = stops.windows(2).zip(forces_g.windows(2));
+    let is_within_range = |stops: &[StopMeans]| {
+        let (from, to) = (stops[0].samples.end, stops[1].samples.start);
+        let mut stretches = log.saturated.iter().map(|one| &one.samples);
+        stretches.all(|samples| samples.end <= from || to <= samples.start)
+    };
     pairs
+        .filter(|(stops, _)| is_within_range(stops))
         .map(|(stops, forces_g)| {
             let (from, to) = (&stops[0], &stops[1]);
             let samples = from.samples.end..to.samples.start;
@@ -158,6 +193,13 @@ fn first_scale(turns: &[Turn]) -> f64 {
 
 /// Start values: axes in any order and of any sign, and scales around the first guess.
 fn starts(unit: f64) -> Vec<Matrix3<f64>> {
+    const SCALES: [f64; 5] = [0.6, 0.8, 1.0, 1.3, 1.7];
+    let each = |axes: Matrix3<f64>| SCALES.map(|scale| axes * (scale * unit));
+    orders_and_signs().flat_map(each).collect()
+}
+
+/// Axes in any order and of any sign.
+fn orders_and_signs() -> impl Iterator<Item = Matrix3<f64>> {
     const ORDERS: [[usize; 3]; 6] = [
         [0, 1, 2],
         [1, 2, 0],
@@ -166,21 +208,16 @@ fn starts(unit: f64) -> Vec<Matrix3<f64>> {
         [0, 2, 1],
         [2, 1, 0],
     ];
-    const SCALES: [f64; 5] = [0.6, 0.8, 1.0, 1.3, 1.7];
-    let mut starts = Vec::new();
-    for order in ORDERS {
-        for signs in 0..8_u8 {
-            for scale in SCALES {
-                let mut start = Matrix3::zeros();
-                for (row, column) in order.into_iter().enumerate() {
-                    let sign = if signs >> row & 1 == 1 { -1.0 } else { 1.0 };
-                    start[(row, column)] = sign * scale * unit;
-                }
-                starts.push(start);
-            }
-        }
-    }
-    starts
+    let signed = |order: [usize; 3]| {
+        (0..8_u8).map(move |signs| {
+            Matrix3::from_fn(|row, column| match order[row] == column {
+                true if signs >> row & 1 == 1 => -1.0,
+                true => 1.0,
+                false => 0.0,
+            })
+        })
+    };
+    ORDERS.into_iter().flat_map(signed)
 }
 
 fn refuse_bad_fit(gravity_rms_g: f64) -> Result<(), InstrumentError> {

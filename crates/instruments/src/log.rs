@@ -1,6 +1,7 @@
 //! Logs of three gyros, most with three accelerometers.
 
 mod stamps;
+mod wild;
 
 use std::path::Path;
 
@@ -9,11 +10,14 @@ use gyrocal_statistics::median_interval_s;
 
 use crate::clock::{Clock, resampled, steady_clock};
 use crate::columns::FileColumns;
-use crate::covariates::{refuse_saturated, temperatures_c};
+use crate::covariates::{Saturated, refuse_saturated, saturated, temperatures_c};
 use crate::description::time::WEEK_S;
 use crate::description::{Description, Direction, Gyro, Jitter, Time, no_accelerometers};
 use crate::error::{InstrumentError, Unfit};
 use crate::scale::{accel_scale, gyro_scale};
+
+pub use wild::BadSamples;
+pub(crate) use wild::of_logs;
 
 /// Samples of gyros and accelerometers; all vectors have the same length.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,10 +36,21 @@ pub struct Log {
     pub gyro_in_counts: bool,
     /// `true` if the scale of the accelerometers is not known.
     pub accel_in_counts: bool,
+    /// Stretches of gyros at the end of their range; only a log that is read for its stops has any.
+    pub saturated: Vec<Saturated>,
+    /// Samples that no noise explains, where [`Self::without_bad_samples`] has left them out.
+    pub bad_samples: Vec<BadSamples>,
     /// Median interval between samples.
     pub interval_s: f64,
     /// Origin of the times.
     pub clock: Clock,
+}
+
+/// What is done with gyros at the end of their range.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum AtEndOfRange {
+    Refused,
+    Told,
 }
 
 /// Intervals longer than this many median ones are gaps.
@@ -53,14 +68,32 @@ impl Log {
     ///
     /// # Errors
     ///
-    /// [`InstrumentError::File`] at its place in the file; [`Unfit::Gap`], [`Unfit::Jitter`] and
-    /// [`Unfit::NoScale`].
+    /// [`InstrumentError::File`] at its place in the file; [`Unfit::Gap`], [`Unfit::Jitter`],
+    /// [`Unfit::NoScale`] and [`Unfit::Saturated`].
     pub fn read(path: &Path, description: &Description) -> Result<Self, InstrumentError> {
+        Self::read_with(path, description, AtEndOfRange::Refused)
+    }
+
+    /// Reads a log for its stops: gyros may be at the end of their range while they turn, [`Self::saturated`] has where;
+    /// samples that no noise explains are left out, as by [`Self::without_bad_samples`].
+    ///
+    /// # Errors
+    ///
+    /// As for [`Self::read`], but for [`Unfit::Saturated`].
+    pub fn read_for_stops(path: &Path, description: &Description) -> Result<Self, InstrumentError> {
+        Ok(Self::read_with(path, description, AtEndOfRange::Told)?.without_bad_samples(true))
+    }
+
+    fn read_with(
+        path: &Path,
+        description: &Description,
+        at_end: AtEndOfRange,
+    ) -> Result<Self, InstrumentError> {
         let names = names(description)?;
         let unit_s = description.time.numeric_unit_s();
         let dated = dated(description);
         let file = FileColumns::read(path, &description.file, &names, dated, unit_s)?;
-        Self::from_columns(file, description)
+        Self::from_columns(file, description, at_end)
     }
 
     /// Parses the text of a log; errors call it `name`.
@@ -76,7 +109,7 @@ impl Log {
         let source = SourceText::new(text, name)?;
         let names = names(description)?;
         let file = FileColumns::of_text(source, &description.file, &names, dated(description))?;
-        Self::from_columns(file, description)
+        Self::from_columns(file, description, AtEndOfRange::Refused)
     }
 
     /// A log of samples at equal intervals \[s\] in rad/s and g.
@@ -92,6 +125,8 @@ impl Log {
             table_rate: None,
             gyro_in_counts: false,
             accel_in_counts: false,
+            saturated: Vec::new(),
+            bad_samples: Vec::new(),
             interval_s,
             clock: Clock::Rate,
         }
@@ -118,7 +153,11 @@ impl Log {
         self.time_s.is_empty()
     }
 
-    fn from_columns(file: FileColumns, description: &Description) -> Result<Self, InstrumentError> {
+    fn from_columns(
+        file: FileColumns,
+        description: &Description,
+        at_end: AtEndOfRange,
+    ) -> Result<Self, InstrumentError> {
         let gyro = gyro_of(description)?;
         let gyro_scale = gyro_scale(gyro)?;
         let accel = description.accel.as_ref();
@@ -147,8 +186,12 @@ impl Log {
             .as_ref()
             .and_then(|column| Some((column, others.next()?)));
         let table_rate = table.map(|(column, values)| column.rates(values, &time_s));
-        for (values, name) in columns.iter().zip(&gyro.columns) {
-            refuse_saturated(&file, values, name)?;
+        let gyros = columns.iter().zip(&gyro.columns);
+        let saturated: Vec<Saturated> = gyros
+            .flat_map(|(values, name)| saturated(values, name))
+            .collect();
+        if at_end == AtEndOfRange::Refused {
+            refuse_saturated(&file, &saturated)?;
         }
         let body = |first: usize, zero: f64, scale: [f64; 3], axes: [Direction; 3]| {
             let sample = |row: usize| {
@@ -172,6 +215,8 @@ impl Log {
             accel: force,
             temperature_c,
             table_rate,
+            saturated,
+            bad_samples: Vec::new(),
             gyro_in_counts: gyro_scale.is_none(),
             accel_in_counts: accel_scale.is_some_and(|scale| scale.is_none()),
             time_s,
@@ -235,7 +280,15 @@ impl Log {
             at_equal.into_iter().map(|[value, ..]| value).collect()
         };
         let jitter_s = self.scatter() * self.interval_s;
+        let place = |sample: usize| at_s.partition_point(|at_s| *at_s < self.time_s[sample]);
+        let moved = |one: Saturated| Saturated {
+            // What is interpolated with such a sample is no better.
+            samples: place(one.samples.start).saturating_sub(1)
+                ..(place(one.samples.end - 1) + 1).min(count),
+            ..one
+        };
         Self {
+            saturated: self.saturated.into_iter().map(moved).collect(),
             temperature_c: self.temperature_c.map(alone),
             table_rate: self.table_rate.map(alone),
             gyro: resampled(&self.time_s, &self.gyro, &at_s),

@@ -17,7 +17,9 @@ mod prepare;
 mod regression;
 mod report;
 mod result;
+mod saturated_turns;
 mod search;
+mod signs;
 mod stop_parts;
 mod terms;
 
@@ -34,6 +36,7 @@ pub use positions::{Instrument, Positions};
 pub use prepare::{PreparedTest, SensorReport, StopReport, prepare, prepare_logs};
 pub use report::{CoefficientReport, FTest, Finding, GyroReport, LawReport, MultiPositionReport};
 pub use result::TumbleResult;
+pub use saturated_turns::SaturatedTurn;
 pub use search::{LEAST_FALSE_ALARM, SearchSettings, SearchStep, search};
 pub use terms::Term;
 

@@ -27,6 +27,7 @@
 //! It reads and writes no files, fits nothing, and knows nothing of HTML.
 
 mod allan;
+mod bad_samples;
 mod calibration;
 mod characterise;
 mod diagnosis;
@@ -41,6 +42,7 @@ mod plant;
 mod ranked;
 mod rates;
 mod read;
+mod signs;
 mod tumble;
 mod uncertainty;
 mod unlisted;

@@ -7,6 +7,7 @@ use gyrocal_instruments::rates::{GyroRates, RateReport};
 use gyrocal_record::{Input, Manifest};
 use gyrocal_statistics::{NORMAL_97_5, format};
 
+use crate::bad_samples;
 use crate::diagnosis::section;
 use crate::origin::{file_name, named, origin};
 
@@ -38,24 +39,39 @@ fn means(logs: &[Input], report: &RateReport, clocks: &[String]) -> Section {
             ]
         };
         let gyros = report.gyros.iter().enumerate().map(move |(gyro, law)| {
-            let of = format!("{}, less Earth rate", law.gyro);
+            let of = match report.earth_vertical_deg_per_h {
+                Some(_) => format!("{}, less Earth rate", law.gyro),
+                None => law.gyro.clone(),
+            };
             row(
                 of,
                 log.bias_deg_per_h[gyro],
                 log.bias_half_width_deg_per_h[gyro],
             )
         });
-        let [rate, sigma] = log.vertical_deg_per_h;
-        let vertical = "vertical, Earth rate and bias".to_owned();
-        gyros.chain([row(vertical, rate, NORMAL_97_5 * sigma)])
+        let vertical = log.vertical_deg_per_h.map(|[rate, sigma]| {
+            let of = "vertical, Earth rate and bias".to_owned();
+            row(of, rate, NORMAL_97_5 * sigma)
+        });
+        gyros.chain(vertical)
     });
     let heads = "log | of | > mean of the log, deg/h | > 95 %";
     let mut items: Vec<Item> = clocks.iter().map(Item::text).collect();
     items.push(Table::of("", heads, rows).into());
-    let lead = format!(
-        "The heading is unknown, and Earth rate is {:.4} deg/h up and {:.4} deg/h north.",
-        report.earth_vertical_deg_per_h, report.earth_horizontal_deg_per_h,
-    );
+    items.extend(bad_samples::table(&report.bad_samples, logs.len()));
+    let earth = [
+        report.earth_vertical_deg_per_h,
+        report.earth_horizontal_deg_per_h,
+    ];
+    let lead = match earth {
+        [Some(up), Some(north)] => format!(
+            "The heading is unknown, and Earth rate is {up:.4} deg/h up and {north:.4} deg/h north."
+        ),
+        _ => format!(
+            "Earth rate of up to 15.04 deg/h is in all rates: {}.",
+            screen::not_known(report)
+        ),
+    };
     section("means", "Means", &lead, items)
 }
 

@@ -96,7 +96,7 @@ fn static_log(seed: u64, longest_s: f64) -> Result<Static, InstrumentError> {
     let made = unit.log(up, [seconds, 100], |_| 0.0, &mut draw, seed);
     let report = evaluated(&[made.log], &unit, "")?;
     let log = &report.logs[0];
-    let [rate, sigma] = log.vertical_deg_per_h;
+    let [rate, sigma] = log.vertical_deg_per_h.unwrap_or([f64::NAN; 2]);
     let vertical = unit.vertical_earth() + up.dot(&made.mean_bias);
     Ok(Static {
         biases: core::array::from_fn(|gyro| {
@@ -159,7 +159,8 @@ fn two_positions(seed: u64) -> Result<TwoPositions, InstrumentError> {
         let truth = unit.vertical_earth() + up.dot(&made.mean_bias);
         of_means[position] = sum / made.log.len() as f64 / DEG_PER_H - truth;
         let report = evaluated(&[made.log], &unit, "")?;
-        let [rate, sigma] = report.logs[0].vertical_deg_per_h;
+        let vertical = report.logs[0].vertical_deg_per_h;
+        let [rate, sigma] = vertical.unwrap_or([f64::NAN; 2]);
         (errors[position], sigmas[position]) = (rate - truth, sigma);
     }
     let half = |of: [f64; 2]| 0.5 * (of[0] - of[1]);

@@ -19,6 +19,8 @@ pub struct Positions {
     pub sigma_deg_per_h: Vec<[f64; 3]>,
     /// The part of the standard errors that comes from an unknown heading.
     pub heading_sigma_deg_per_h: Vec<[f64; 3]>,
+    /// The part of them that comes from angles in steps.
+    pub quantisation_sigma_deg_per_h: Vec<[f64; 3]>,
     /// Rates over equal parts of each stop, less that of the stop; none of a stop too short.
     pub parts_deg_per_h: Vec<Vec<[f64; 3]>>,
     /// Duration of each stop.
@@ -86,6 +88,9 @@ impl Positions {
                 noise.hypot(heading[gyro])
             })
         };
+        let quantisation = |stop: &StopMeans| {
+            core::array::from_fn(|gyro| stop.gyro_quantisation[gyro] * deg_per_h[gyro])
+        };
         let parts = |stop: &StopMeans| {
             let scaled =
                 |part: &[f64; 3]| core::array::from_fn(|gyro| part[gyro] * deg_per_h[gyro]);
@@ -96,6 +101,7 @@ impl Positions {
             rate_deg_per_h: stops.iter().zip(&force_g).map(rate).collect(),
             sigma_deg_per_h: stops.iter().zip(&force_g).map(sigma).collect(),
             heading_sigma_deg_per_h: force_g.iter().map(heading).collect(),
+            quantisation_sigma_deg_per_h: stops.iter().map(quantisation).collect(),
             parts_deg_per_h: stops.iter().map(parts).collect(),
             duration_s: stops.iter().map(|stop| stop.to_s - stop.from_s).collect(),
             log: vec![0; stops.len()],
@@ -146,6 +152,7 @@ impl Positions {
             rate_deg_per_h: pick(&self.rate_deg_per_h, which),
             sigma_deg_per_h: pick(&self.sigma_deg_per_h, which),
             heading_sigma_deg_per_h: pick(&self.heading_sigma_deg_per_h, which),
+            quantisation_sigma_deg_per_h: pick(&self.quantisation_sigma_deg_per_h, which),
             parts_deg_per_h: pick(&self.parts_deg_per_h, which),
             duration_s: pick(&self.duration_s, which),
             force_g: pick(&self.force_g, which),

@@ -5,12 +5,13 @@ use core::ops::Range;
 use serde::Serialize;
 
 use super::positions::{Instrument, Positions};
+use super::saturated_turns::{SaturatedTurn, refuse_saturated_stops, saturated_turns};
 use crate::accel_from_norm::{accel_from_norm, refuse_wrong_norm};
 use crate::accel_from_positions::{AccelErrors, accel_from_positions};
 use crate::description::Description;
 use crate::error::{InstrumentError, Unfit};
-use crate::gyro_from_turns::{GyroCalibration, gyro_from_turns};
-use crate::log::Log;
+use crate::gyro_from_turns::{GyroCalibration, gyro_from_turns, refuse_axes_of_few_turns};
+use crate::log::{BadSamples, Log, of_logs};
 use crate::stop_means::{StopMeans, stop_means};
 
 /// A log reduced to its stops.
@@ -25,6 +26,10 @@ pub struct PreparedTest {
     /// Calibration of the gyros from the turns between stops; `None` if their scale is given and the
     /// turns are too few to check it.
     pub turns: Option<GyroCalibration>,
+    /// Turns that are left out of it, since a gyro is at the end of its range.
+    pub saturated_turns: Vec<SaturatedTurn>,
+    /// Samples of the logs that no noise explains.
+    pub bad_samples: Vec<BadSamples>,
     /// Rates and specific force at the stops.
     pub positions: Positions,
 }
@@ -71,6 +76,12 @@ pub struct SensorReport {
     pub gyro_misalignment_rad: Option<[f64; 3]>,
     /// Rms difference, per component, between gravity rotated by the turns and measured gravity \[g\].
     pub turn_rms_g: Option<f64>,
+    /// Turns that these leave out, since a gyro is at the end of its range.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub saturated_turns: Vec<SaturatedTurn>,
+    /// Samples that no noise explains, each with the median of those about it in its place.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub bad_samples: Vec<BadSamples>,
 }
 
 /// Largest relative difference between the scale from the turns and the given one.
@@ -82,12 +93,14 @@ const LARGEST_SCALE_ERROR: f64 = 0.1;
 ///
 /// As [`accel_from_norm`] and [`gyro_from_turns`] where scales are estimated; [`Unfit::Norm`],
 /// [`Unfit::GyroScale`] and [`Unfit::Axes`] where given scales and axes contradict the stops and
-/// the turns between them; [`Unfit::NoAccelerometers`].
+/// the turns between them; [`Unfit::NoAccelerometers`]; [`Unfit::Saturated`] where a gyro is at the end of its range
+/// at a stop. A turn in which it is there is left out.
 pub fn prepare(
     log: &Log,
     description: &Description,
     stops: &[Range<usize>],
 ) -> Result<PreparedTest, InstrumentError> {
+    refuse_saturated_stops(log, stops)?;
     let stops = stop_means(log, stops)?;
     prepare_means(log, description, stops, true)
 }
@@ -123,9 +136,10 @@ pub fn prepare_logs(
         ));
     }
     let mut means: Vec<StopMeans> = Vec::new();
-    let mut of_logs: Vec<usize> = Vec::new();
+    let mut numbers: Vec<usize> = Vec::new();
     let mut end_s = f64::NEG_INFINITY;
     for (number, (log, stops)) in logs.iter().enumerate() {
+        refuse_saturated_stops(log, stops)?;
         let (Some(from_s), Some(to_s)) = (log.time_s.first(), log.time_s.last()) else {
             continue;
         };
@@ -139,12 +153,13 @@ pub fn prepare_logs(
             time_s: stop.time_s + later_s,
             ..stop
         }));
-        of_logs.resize(means.len(), number);
+        numbers.resize(means.len(), number);
         end_s = to_s + later_s;
     }
     let prepared = prepare_means(first, description, means, false)?;
     Ok(PreparedTest {
-        positions: prepared.positions.of_logs(of_logs),
+        positions: prepared.positions.of_logs(numbers),
+        bad_samples: of_logs(logs.iter().map(|(log, _)| log)),
         ..prepared
     })
 }
@@ -182,7 +197,10 @@ fn prepare_means(
     let turns = match from_turns.transpose() {
         Ok(turns) => turns,
         // A given scale needs no turns.
-        Err(error) if !log.gyro_in_counts && has_too_few_turns(&error) => None,
+        Err(error) if !log.gyro_in_counts && has_too_few_turns(&error) => {
+            refuse_axes_of_few_turns(log, &stops, &forces_g)?;
+            None
+        }
         Err(error) => return Err(error),
     };
     let outputs_per_rad_per_s = match &turns {
@@ -200,6 +218,11 @@ fn prepare_means(
     };
     Ok(PreparedTest {
         positions: Positions::new(&stops, &instrument),
+        saturated_turns: match has_turns {
+            true => saturated_turns(log, &stops),
+            false => Vec::new(),
+        },
+        bad_samples: of_logs([log]),
         stops,
         instrument,
         accel_errors,
@@ -236,6 +259,8 @@ impl PreparedTest {
             gyro_matrix_sigma: turns.map(|turns| turns.sigma),
             gyro_misalignment_rad: turns.map(|turns| turns.misalignment_rad),
             turn_rms_g: turns.map(|turns| turns.gravity_rms_g),
+            saturated_turns: self.saturated_turns.clone(),
+            bad_samples: self.bad_samples.clone(),
         }
     }
 }

@@ -36,6 +36,8 @@ pub(super) struct StopParts {
     /// Variance of the mean of a part by fast noise, and that of its stop by the heading.
     white: Vec<f64>,
     heading: Vec<f64>,
+    /// Variance of the mean of a part by the steps of its angles; those at the ends of two parts are the same.
+    quantisation: Vec<f64>,
     flicker: DMatrix<f64>,
     walk: DMatrix<f64>,
 }
@@ -44,7 +46,7 @@ impl StopParts {
     /// One gyro at all stops.
     pub(super) fn of(positions: &Positions, gyro: usize) -> Self {
         let stops = positions.time_s.len();
-        let has_parts = has_parts(positions);
+        let most = most_parts(positions);
         let logs = positions.logs();
         let mut terms = Term::NOMINAL.to_vec();
         terms.extend(Term::catalogue(gyro));
@@ -55,12 +57,9 @@ impl StopParts {
         let mut spans = Vec::new();
         let (mut rates, mut stop, mut log) = (Vec::new(), Vec::new(), Vec::new());
         let (mut white, mut heading, mut rows) = (Vec::new(), Vec::new(), Vec::new());
+        let mut quantisation = Vec::new();
         for number in 0..stops {
-            let own = if has_parts {
-                &positions.parts_deg_per_h[number][..]
-            } else {
-                &[]
-            };
+            let own = joined(&positions.parts_deg_per_h[number], most);
             let count = own.len().max(1);
             let each_s = long_s(number) / count as f64;
             for part in 0..count {
@@ -68,12 +67,15 @@ impl StopParts {
                 spans.push([from_s, from_s + each_s]);
                 let off = own.get(part).map_or(0.0, |off| off[gyro]);
                 rates.push(positions.rate_deg_per_h[number][gyro] + off);
-                let [total, by_heading] = [
+                let [total, by_heading, by_steps] = [
                     &positions.sigma_deg_per_h,
                     &positions.heading_sigma_deg_per_h,
+                    &positions.quantisation_sigma_deg_per_h,
                 ]
                 .map(|sigma| sigma[number][gyro].powi(2));
-                white.push((total - by_heading).max(LEAST_WHITE * total) * count as f64);
+                let fast = (total - by_heading - by_steps).max(LEAST_WHITE * total);
+                white.push(fast * count as f64);
+                quantisation.push(by_steps * (count * count) as f64);
                 heading.push(by_heading);
                 stop.push(number);
                 log.push(
@@ -117,6 +119,7 @@ impl StopParts {
             log,
             white,
             heading,
+            quantisation,
         }
     }
 
@@ -143,7 +146,11 @@ impl StopParts {
         let squared = (self.unit_deg_per_h * scatter).powi(2);
         let mut covariance = &self.flicker * (flicker * flicker) + &self.walk * (walk * walk);
         for (i, own) in self.stop.iter().enumerate() {
-            covariance[(i, i)] += self.white[i];
+            covariance[(i, i)] += self.white[i] + self.quantisation[i];
+            if self.stop.get(i + 1) == Some(own) {
+                covariance[(i, i + 1)] -= 0.5 * self.quantisation[i];
+                covariance[(i + 1, i)] -= 0.5 * self.quantisation[i];
+            }
             for (j, other) in self.stop.iter().enumerate() {
                 if own == other {
                     covariance[(i, j)] += squared + self.heading[i];
@@ -157,10 +164,9 @@ impl StopParts {
     /// freedom tell it.
     pub(super) fn largest_level(&self, law: &[Term], biases: usize, freedom: usize) -> f64 {
         let columns = self.columns(biases);
-        let weights = self.white.iter().zip(&self.heading);
-        let weights: Vec<f64> = weights
-            .map(|(white, heading)| (white + heading).sqrt().recip())
-            .collect();
+        let variance = |row: usize| self.white[row] + self.heading[row] + self.quantisation[row];
+        let rows = 0..self.rates.len();
+        let weights: Vec<f64> = rows.map(|row| variance(row).sqrt().recip()).collect();
         let place = |term: &Term| self.terms.iter().position(|one| one == term);
         let mut chosen: Vec<usize> = law.iter().filter_map(place).map(|at| at + 1).collect();
         chosen.extend(1 + self.terms.len()..columns.ncols());
@@ -184,14 +190,31 @@ impl StopParts {
     }
 }
 
-/// Whether stops are taken in parts: where all of them together are few enough.
-fn has_parts(positions: &Positions) -> bool {
-    positions
-        .parts_deg_per_h
-        .iter()
-        .map(Vec::len)
-        .sum::<usize>()
-        <= MOST_PARTS
+/// Most parts of a stop with which those of all stops together are few enough.
+fn most_parts(positions: &Positions) -> usize {
+    let mut most = MOST_PARTS;
+    let all = |most: usize| -> usize {
+        let parts = positions.parts_deg_per_h.iter();
+        parts.map(|parts| parts.len().min(most).max(1)).sum()
+    };
+    while most > 1 && all(most) > MOST_PARTS {
+        most /= 2;
+    }
+    most
+}
+
+/// At most so many parts of a stop, from those that follow one another; none of a stop in one part.
+fn joined(parts: &[[f64; 3]], most: usize) -> Vec<[f64; 3]> {
+    if most < 2 || parts.is_empty() {
+        return Vec::new();
+    }
+    let together = parts.len().div_ceil(most);
+    let mean = |parts: &[[f64; 3]]| {
+        core::array::from_fn(|gyro| {
+            parts.iter().map(|part| part[gyro]).sum::<f64>() / parts.len() as f64
+        })
+    };
+    parts.chunks(together).map(mean).collect()
 }
 
 /// Median time from a stop to the next one of its log; of logs of one stop from log to log.

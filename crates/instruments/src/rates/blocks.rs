@@ -15,7 +15,7 @@ pub(super) struct Blocks {
     pub(super) time_s: Vec<f64>,
     /// Mean outputs of the gyros \[rad/s\].
     pub(super) rate: Vec<Vector3<f64>>,
-    /// Mean specific force over its norm.
+    /// Mean specific force over its norm; zero of gyros alone.
     pub(super) up: Vec<Vector3<f64>>,
     /// Mean temperature \[degrees Celsius\].
     pub(super) temperature_c: Option<Vec<f64>>,
@@ -25,9 +25,10 @@ pub(super) struct Blocks {
     pub(super) table: Option<Vec<Vector3<f64>>>,
     /// `true` if the axis of the table is that of specific force, with its error.
     axis_is_up: bool,
-    /// Two horizontal directions in body axes at right angles, as the table turns them; means over blocks.
+    /// Two horizontal directions in body axes at right angles, as the table turns them; means over blocks. Zero of gyros
+    /// alone.
     pub(super) horizontal: [Vec<Vector3<f64>>; 2],
-    /// Mean specific force of the log over its norm.
+    /// Mean specific force of the log over its norm; zero of gyros alone.
     pub(super) mean_up: Vector3<f64>,
 }
 
@@ -51,18 +52,30 @@ impl Blocks {
                 })
                 .collect()
         };
-        let force = log.force()?;
-        let force = means(&|sample| Vector3::from(force[sample]));
-        let mean_up = force.iter().sum::<Vector3<f64>>().normalize();
-        let up: Vec<Vector3<f64>> = force.iter().map(|force| force.normalize()).collect();
-        refuse_turned(&up, &mean_up)?;
+        let of_force = |force: &Vec<[f64; 3]>| means(&|sample| Vector3::from(force[sample]));
+        let force = log.accel.as_ref().map(of_force);
+        let needs_axis = log.table_rate.is_some() && table_axis.is_none();
+        if force.is_none() && needs_axis {
+            return Err(no_axis());
+        }
+        let mean_up = force.as_ref().map_or_else(Vector3::zeros, |force| {
+            force.iter().sum::<Vector3<f64>>().normalize()
+        });
+        let up: Vec<Vector3<f64>> = match &force {
+            Some(force) => force.iter().map(|force| force.normalize()).collect(),
+            None => means(&|_| Vector3::zeros()),
+        };
+        if force.is_some() {
+            refuse_turned(&up, &mean_up)?;
+        }
         let axis = table_axis.map_or(mean_up, |axis| Vector3::from(axis).normalize());
         let scalar = |values: &[f64]| -> Vec<f64> {
             let of = |sample: usize| Vector3::new(values[sample], 0.0, 0.0);
             means(&of).into_iter().map(|mean| mean.x).collect()
         };
         let angles = table_angles(log);
-        let east = mean_up.cross(&least_along(&mean_up)).normalize();
+        let east = mean_up.cross(&least_along(&mean_up));
+        let east = east.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
         let horizontal = [east, mean_up.cross(&east)].map(|direction| {
             means(&|sample| match &angles {
                 // What is fixed to the Earth turns against the table in body axes.
@@ -133,6 +146,15 @@ fn least_along(direction: &Vector3<f64>) -> Vector3<f64> {
     let mut axis = Vector3::zeros();
     axis[direction.iamin()] = 1.0;
     axis
+}
+
+fn no_axis() -> InstrumentError {
+    InstrumentError::unfit(
+        Unfit::NoAccelerometers,
+        "a turntable without accelerometers, which tell its axis",
+        "`axis` in `[table]`, or `[accel]`",
+        "give the axis of the table in body axes, such as `axis = [0, 0, 1]`",
+    )
 }
 
 fn refuse_turned(up: &[Vector3<f64>], mean_up: &Vector3<f64>) -> Result<(), InstrumentError> {

@@ -18,11 +18,13 @@ pub struct LogRates {
     pub duration_s: f64,
     /// Mean outputs of the gyros and their standard deviations \[deg/h\].
     pub rate_deg_per_h: [[f64; 2]; 3],
-    /// Mean output along specific force, up, and its standard deviation \[deg/h\]: Earth rate, and bias.
-    pub vertical_deg_per_h: [f64; 2],
-    /// Magnitude of the mean output across specific force \[deg/h\]: Earth rate, and bias.
-    pub horizontal_deg_per_h: f64,
-    /// Bias of each gyro at this specific force: output less Earth rate \[deg/h\].
+    /// Mean output along specific force, up, and its standard deviation \[deg/h\]: Earth rate, and bias; `None` of gyros
+    /// alone.
+    pub vertical_deg_per_h: Option<[f64; 2]>,
+    /// Magnitude of the mean output across specific force \[deg/h\]: Earth rate, and bias; `None` of gyros alone.
+    pub horizontal_deg_per_h: Option<f64>,
+    /// Bias of each gyro at this specific force: output less Earth rate \[deg/h\], or the output where Earth rate is not
+    /// known.
     pub bias_deg_per_h: [f64; 3],
     /// Half the widths of the 95 % intervals of the biases, for any heading \[deg/h\].
     pub bias_half_width_deg_per_h: [f64; 3],
@@ -68,16 +70,17 @@ impl LogRates {
                 values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
             ]
         });
+        let has_attitude = log.accel.is_some();
         let across_up = (mean - up * up.dot(&mean)).norm();
         Self {
             duration_s,
             rate_deg_per_h: core::array::from_fn(|gyro| [mean[gyro], sigma[gyro]]),
-            vertical_deg_per_h: [
-                up.dot(&mean),
+            vertical_deg_per_h: has_attitude.then(|| {
                 // An error of the level sees what is across.
-                along(up).sqrt().hypot(level_sigma_rad * across_up),
-            ],
-            horizontal_deg_per_h: across_up,
+                let sigma = along(up).sqrt().hypot(level_sigma_rad * across_up);
+                [up.dot(&mean), sigma]
+            }),
+            horizontal_deg_per_h: has_attitude.then_some(across_up),
             bias_deg_per_h: core::array::from_fn(|gyro| mean[gyro] - vertical * up[gyro]),
             bias_half_width_deg_per_h: core::array::from_fn(|gyro| {
                 half_width(across(gyro), sigma[gyro].hypot(level))

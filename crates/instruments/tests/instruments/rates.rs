@@ -85,8 +85,8 @@ fn biases_of_degrees_a_second_are_ordinary() {
         assert!(error.abs() < log.bias_half_width_deg_per_h[gyro], "{log:?}");
         assert!(log.bias_half_width_deg_per_h[gyro] < EARTH_DEG_PER_H);
     }
-    let expected = report.earth_vertical_deg_per_h + bias.dot(&up.normalize());
-    let [rate, sigma] = log.vertical_deg_per_h;
+    let expected = report.earth_vertical_deg_per_h.unwrap() + bias.dot(&up.normalize());
+    let [rate, sigma] = log.vertical_deg_per_h.unwrap();
     assert!(
         (rate - expected).abs() < SIGMAS * sigma,
         "{log:?}, {expected}"
@@ -289,6 +289,74 @@ fn an_earth_that_turns_the_other_way_is_told() {
     let made = |matrix: Matrix3<f64>| log(up, 40_000, &still, &matrix, &|_| Vector3::zeros(), 8);
     assert!(!evaluated(&[made(Matrix3::identity())], "").earth_is_reversed);
     assert!(evaluated(&[made(-Matrix3::identity())], "").earth_is_reversed);
+}
+
+#[test]
+fn a_wild_sample_is_told_and_left_out() {
+    let up = Vector3::new(0.1, -0.2, 1.0);
+    let still = |_: usize| 0.0;
+    let made = log(
+        up,
+        4000,
+        &still,
+        &Matrix3::identity(),
+        &|_| Vector3::zeros(),
+        9,
+    );
+    let mut wild = made.clone();
+    wild.gyro[2600][0] = 35.0;
+    let [sound, report] = [made, wild].map(|log| evaluated(&[log], ""));
+    let [bad] = &report.bad_samples[..] else {
+        panic!("{:?}", report.bad_samples);
+    };
+    assert_eq!((&*bad.gyro, bad.count, bad.log), ("gyro_x", 1, 0));
+    assert_eq!(bad.samples[0].sample, 2601);
+    assert!((bad.samples[0].time_s - 260.0).abs() < 1e-9);
+    assert!((bad.samples[0].value * DEG_PER_H / 35.0 - 1.0).abs() < 1e-9);
+    assert!(sound.bad_samples.is_empty());
+    // One median of 4000 samples: a deviation of one sample over their number, 30 deg/h / 4000.
+    let [bias, of_sound] = [&report, &sound].map(|report| report.logs[0].bias_deg_per_h[0]);
+    assert!((bias - of_sound).abs() < 0.03, "{bias} {of_sound}");
+}
+
+#[test]
+fn gyros_alone_tell_rates() {
+    let up = Vector3::new(0.1, -0.2, 1.0).normalize();
+    let drift = |sample: usize| Vector3::new(300.0, if sample < 12_000 { 0.0 } else { 150.0 }, 0.0);
+    let mut made = log(up, 24_000, &|_| 0.0, &Matrix3::identity(), &drift, 10);
+    let with_attitude = evaluated(&[made.clone()], "");
+    // Without a latitude the outputs are what they are, and the part along specific force is told.
+    let text = "[time]\nrate_hz = 10\n[gyro]\ncolumns = [\"a\", \"b\", \"c\"]\nunit = \"rad/s\"\n";
+    let without = Description::parse(text, "log.toml").expect("description");
+    let settings = RateSettings::default();
+    let report = evaluate_rates(&[made.clone()], &without, &settings).expect("rates");
+    assert_eq!(report.earth_vertical_deg_per_h, None);
+    let vertical = |report: &RateReport| report.logs[0].vertical_deg_per_h.map(|[rate, _]| rate);
+    assert_eq!(vertical(&report), vertical(&with_attitude));
+    // Nor without accelerometers, with a latitude or not.
+    made.accel = None;
+    let report = evaluated(&[made.clone()], "");
+    assert_eq!(report.earth_horizontal_deg_per_h, None);
+    assert_eq!(vertical(&report), None);
+    let effects: Vec<&str> = report.gyros[1]
+        .effects()
+        .map(|(one, _)| &*one.name)
+        .collect();
+    assert_eq!(effects, ["gyro_y.step"]);
+    let earth = EARTH_DEG_PER_H * LATITUDE_DEG.to_radians().sin() * up.x;
+    let [rate, sigma] = report.logs[0].rate_deg_per_h[0];
+    assert_eq!(rate, report.logs[0].bias_deg_per_h[0]);
+    // The horizontal part is in any direction.
+    let off = (rate - 300.0 - earth).abs();
+    assert!(off < EARTH_DEG_PER_H + SIGMAS * sigma, "{rate} {sigma}");
+    assert_eq!(report.gyros[0].undetermined.len(), 3);
+    // Two logs of a unit have one bias between them.
+    let two = evaluated(&[made.clone(), made.clone()], "");
+    assert_eq!(two.gyros[0].coefficients.len(), 1);
+    // A table without an axis has none.
+    made.table_rate = Some(vec![0.1; made.len()]);
+    let error = evaluate_rates(&[made], &without, &settings).expect_err("refused");
+    assert_eq!(error.kind(), Some(Unfit::NoAccelerometers));
 }
 
 #[test]

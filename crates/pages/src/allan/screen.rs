@@ -6,11 +6,10 @@ use gyrocal_statistics::allan::NoiseFit;
 use gyrocal_statistics::format;
 use gyrocal_words::{counted, joined};
 
+use crate::bad_samples::each;
+
 /// Columns that are told one by one.
 const COLUMNS_SHOWN: usize = 4;
-
-/// Samples of a column that are told one by one.
-const SAMPLES_SHOWN: usize = 3;
 
 /// The parts of the noise of each column, and whether they describe it.
 pub(super) fn first(report: &AllanReport, clock: Option<&str>) -> Screen {
@@ -72,17 +71,9 @@ pub(super) fn first(report: &AllanReport, clock: Option<&str>) -> Screen {
 
 /// The samples of a column that are left out, and what would be said with them.
 pub(super) fn bad_samples(left_out: &LeftOut, unit: &str) -> String {
-    let each = left_out.samples.iter().take(SAMPLES_SHOWN).map(|one| {
-        let (time_s, value) = (format::short(one.time_s, 6), format::short(one.value, 5));
-        format!("{} at {time_s} s ({value} {unit})", one.sample)
-    });
-    let each = joined(each, ", ");
-    let more = match left_out.count.saturating_sub(SAMPLES_SHOWN) {
-        0 => String::new(),
-        more => format!(" and {more} more"),
-    };
+    let samples = each(&left_out.samples, left_out.count, unit);
     format!(
-        "sample {each}{more}; with {}: {}",
+        "{samples}; with {}: {}",
         if left_out.count == 1 { "it" } else { "them" },
         parts(left_out.noise_with_them.as_ref(), unit)
     )

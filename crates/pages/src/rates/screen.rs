@@ -6,7 +6,9 @@ use gyrocal_record::Input;
 use gyrocal_statistics::format;
 use gyrocal_words::{counted, few};
 
+use crate::bad_samples::left_out;
 use crate::origin::named;
+use crate::signs::against_the_earth;
 
 /// Effects that are told one by one.
 const EFFECTS_SHOWN: usize = 4;
@@ -30,16 +32,7 @@ pub(super) fn first(logs: &[Input], report: &RateReport) -> Screen {
         ),
     };
     if report.earth_is_reversed {
-        screen = Screen::new(
-            Standing::Bad,
-            "CHECK SIGNS",
-            "the unit turns about the vertical against the Earth, at its rate",
-        );
-        screen.fact(
-            "check first",
-            "signs and axes of gyros and of accelerometers, sign of the latitude; or the bias about the vertical is twice \
-             Earth rate by chance",
-        );
+        screen = against_the_earth();
     }
     for (effect, coefficient) in found.iter().take(EFFECTS_SHOWN) {
         let estimate = format::estimate(coefficient.estimate, coefficient.sigma).join(" ± ");
@@ -55,6 +48,7 @@ pub(super) fn first(logs: &[Input], report: &RateReport) -> Screen {
         );
         screen.fact(&effect.name, words);
     }
+    screen.fact("left out", left_out(&report.bad_samples, logs.len()));
     biases(report, &mut screen);
     if let (true, Some(correlation)) = (report.time_is_temperature, report.time_and_temperature) {
         let words = format!(
@@ -66,7 +60,10 @@ pub(super) fn first(logs: &[Input], report: &RateReport) -> Screen {
     let undetermined = report.gyros.iter().flat_map(|gyro| &gyro.undetermined);
     let names = few(undetermined, NAMES_SHOWN);
     if !names.is_empty() {
-        let way = format!("{names}: turn the unit over, a log each");
+        let way = match has_attitude(report) {
+            true => format!("{names}: turn the unit over, a log each"),
+            false => format!("{names}: needs accelerometers, and the unit turned over, a log each"),
+        };
         screen.fact("undetermined", way);
     }
     let duration_s: f64 = report.logs.iter().map(|log| log.duration_s).sum();
@@ -74,22 +71,46 @@ pub(super) fn first(logs: &[Input], report: &RateReport) -> Screen {
     screen
 }
 
-/// Biases of the gyros: of one log by its means, of several by the law.
+/// Whether the logs have accelerometers.
+fn has_attitude(report: &RateReport) -> bool {
+    let mut logs = report.logs.iter();
+    logs.all(|log| log.vertical_deg_per_h.is_some())
+}
+
+/// Why Earth rate is not taken off.
+pub(super) fn not_known(report: &RateReport) -> &'static str {
+    match has_attitude(report) {
+        true => "the description has no `latitude_deg`",
+        false => "without accelerometers the attitude is not known",
+    }
+}
+
+/// Biases of the gyros: of one log by its means, of several by the law; rates, where Earth rate is not known.
 fn biases(report: &RateReport, screen: &mut Screen) {
+    let earth = report.earth_vertical_deg_per_h;
+    if earth.is_none() {
+        let words = format!(
+            "rates, that is bias and whatever turns the unit, Earth rate of up to 15.04 deg/h included: {}",
+            not_known(report)
+        );
+        screen.fact("not bias alone", words);
+    }
     if let [log] = &report.logs[..] {
+        let what = match earth {
+            Some(_) => "bias and terms in specific force",
+            None => "mean of the log",
+        };
         for (gyro, law) in report.gyros.iter().enumerate() {
             let words = format!(
-                "{:.4} ± {:.4} deg/h (95 %), bias and terms in specific force",
+                "{:.4} ± {:.4} deg/h (95 %), {what}",
                 log.bias_deg_per_h[gyro], log.bias_half_width_deg_per_h[gyro]
             );
             screen.fact(&law.gyro, words);
         }
-        let [rate, sigma] = log.vertical_deg_per_h;
-        let words = format!(
-            "{rate:.4} ± {sigma:.4} deg/h, Earth {:.4}",
-            report.earth_vertical_deg_per_h
-        );
-        screen.fact("vertical", words);
+        if let (Some(earth), Some([rate, sigma])) = (earth, log.vertical_deg_per_h) {
+            let words = format!("{rate:.4} ± {sigma:.4} deg/h, Earth {earth:.4}");
+            screen.fact("vertical", words);
+        }
         return;
     }
     for gyro in &report.gyros {

@@ -1,12 +1,14 @@
 //! The first screen of a multi-position test.
 
 use gyrocal_document::{Screen, Standing};
-use gyrocal_instruments::multi_position::{FewPositionReport, MultiPositionReport};
+use gyrocal_instruments::multi_position::{FewPositionReport, MultiPositionReport, SensorReport};
 use gyrocal_statistics::format;
 use gyrocal_words::{counted, few, joined};
 
 use super::TumbleAnswer;
+use crate::bad_samples::left_out;
 use crate::origin::named;
+use crate::signs::against_the_earth;
 
 /// Terms that are told one by one.
 const TERMS_SHOWN: usize = 6;
@@ -22,6 +24,11 @@ pub(super) fn first(answer: &TumbleAnswer<'_>) -> Screen {
     }
     if let Some(report) = &result.few_positions {
         screen = few_positions(report);
+    }
+    if result.earth_is_reversed {
+        let law = screen;
+        screen = against_the_earth();
+        screen.facts.extend(law.facts);
     }
     if result
         .few_positions
@@ -41,15 +48,39 @@ pub(super) fn first(answer: &TumbleAnswer<'_>) -> Screen {
             None => "squares along all three axes from the bias; g_i from Earth rate (no latitude)",
         },
     );
+    screen.fact("left out", saturated(&result.sensors));
     // The last file is the description.
     let logs = answer
         .manifest
         .inputs
         .split_last()
         .map_or(&[][..], |(_, logs)| logs);
+    let bad = left_out(&result.sensors.bad_samples, logs.len());
+    screen.fact("left out", bad);
     let stops = counted(answer.prepared.stops.len(), "static stop");
     screen.fact("log", format!("{}: {stops}", named(logs)));
     screen
+}
+
+/// The turns that are left out of the calibration of the gyros, and why; empty without any.
+fn saturated(sensors: &SensorReport) -> String {
+    let turns = &sensors.saturated_turns;
+    let each = turns.iter().take(NAMES_SHOWN).map(|turn| {
+        format!(
+            "the turn from {} to {} s, with {} of `{}` at the end of its range, {}, from sample {} on",
+            format::short(turn.from_s, 5),
+            format::short(turn.to_s, 5),
+            counted(turn.samples, "sample"),
+            turn.column,
+            turn.end,
+            turn.first_sample
+        )
+    });
+    let each = joined(each, "; ");
+    match turns.len().saturating_sub(NAMES_SHOWN) {
+        0 => each,
+        more => format!("{each}; and {more} more"),
+    }
 }
 
 /// A term with its estimate and sigma, unit, p-value, and the names of what it may also be.

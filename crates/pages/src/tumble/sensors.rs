@@ -5,6 +5,7 @@ use gyrocal_instruments::AccelErrors;
 use gyrocal_statistics::format;
 
 use super::TumbleAnswer;
+use crate::bad_samples;
 use crate::diagnosis::section;
 
 /// Stops, accelerometers and gyros.
@@ -36,6 +37,24 @@ pub(super) fn section_of(answer: &TumbleAnswer<'_>) -> Section {
             turns.turns,
         )));
     }
+    let left_out = sensors.saturated_turns.iter().map(|turn| {
+        [
+            format!("{:.2}", turn.from_s),
+            format!("{:.2}", turn.to_s),
+            turn.column.clone(),
+            turn.end.to_string(),
+            turn.samples.to_string(),
+            turn.first_sample.to_string(),
+        ]
+    });
+    if left_out.len() > 0 {
+        let heads =
+            "> from, s | > to, s | gyro | > end of its range | > samples there | > first of them";
+        let title = "Turns left out, since a gyro is at the end of its range";
+        items.push(Table::of(title, heads, left_out).into());
+    }
+    let logs = answer.manifest.inputs.len() - 1;
+    items.extend(bad_samples::table(&sensors.bad_samples, logs));
     let list = |values: [f64; 3], digits: usize| {
         values.map(|value| format!("{value:.digits$}")).join(", ")
     };
