@@ -64,12 +64,16 @@ impl ClockFault {
     }
 }
 
-/// The parts of times that go back at few rows and rise between them, two rows each at least; `None` of others.
+/// The parts of times that go back at few rows and rise between them; `None` of others. A single row out of order is
+/// none: a clock that begins again gives two rows at least that are not later than the last before.
 #[must_use]
 pub fn restarts(time_s: &[f64]) -> Option<Vec<Range<usize>>> {
     let mut starts = vec![0];
     for (at, pair) in time_s.windows(2).enumerate() {
         if pair[1] < pair[0] {
+            if time_s.get(at + 2).is_none_or(|next| *next > pair[0]) {
+                return None;
+            }
             starts.push(at + 1);
         } else if pair[1].is_nan() || pair[1] == pair[0] {
             return None;
