@@ -30,7 +30,7 @@ impl<'b> Past<'b> {
         let (last, start_s) = match first {
             0 => (Cow::Borrowed(run.record), 0.0),
             _ => (
-                Cow::Owned(part(run.record, first..run.record.len())),
+                Cow::Owned(run.record.part(first..run.record.len())),
                 run.record.time_s[first] - run.record.time_s[0],
             ),
         };
