@@ -32,13 +32,16 @@ impl Map {
         self.path().map(|path| (InputRole::Columns, path))
     }
 
-    /// Reads a record; warns of a last line that seems cut off.
+    /// The map, if there is one.
+    pub(crate) fn description(&self) -> Result<Option<Description>, Failure> {
+        Ok(self.path().map(Description::read).transpose()?)
+    }
+
+    /// Reads a record; warns of rows that were left out and of a last line that seems cut off.
     pub(crate) fn read(&self, path: &Path) -> Result<RecordFile, Failure> {
-        let description = self.path().map(Description::read).transpose()?;
+        let description = self.description()?;
         let file = read_any(path, description.as_ref()).map_err(|error| unusable(path, error))?;
-        if let Some(note) = file.cut_note() {
-            terminal::warn(&note);
-        }
+        file.notes().iter().for_each(|note| terminal::warn(note));
         Ok(file)
     }
 }

@@ -30,7 +30,7 @@ impl<'b> Past<'b> {
         let (last, start_s) = match first {
             0 => (Cow::Borrowed(run.record), 0.0),
             _ => (
-                Cow::Owned(part(run.record, first..run.record.len())),
+                Cow::Owned(run.record.part(first..run.record.len())),
                 run.record.time_s[first] - run.record.time_s[0],
             ),
         };
@@ -98,17 +98,7 @@ impl<'b> Past<'b> {
         let ends = ends.chain([self.record.len()]);
         let parts = self.starts.iter().zip(ends);
         parts
-            .map(|(start, end)| record_summary(&part(self.record, *start..end)))
+            .map(|(start, end)| record_summary(&self.record.part(*start..end)))
             .collect()
-    }
-}
-
-/// Some rows of a record.
-fn part(record: &Record, rows: core::ops::Range<usize>) -> Record {
-    let temperature_c = record.temperature_c.as_ref();
-    Record {
-        time_s: record.time_s[rows.clone()].to_vec(),
-        accel_g: record.accel_g[rows.clone()].to_vec(),
-        temperature_c: temperature_c.map(|column| column[rows].to_vec()),
     }
 }

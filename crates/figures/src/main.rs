@@ -9,6 +9,7 @@ mod catalogue;
 mod comparison;
 mod cost;
 mod diagnosis_ground;
+mod dialects;
 mod embedded;
 mod error;
 mod facts;

@@ -8,8 +8,8 @@ use crate::harness::Context;
 use crate::harness::sources::{CALIBRATION, DIAGNOSIS, FILTER, INSTRUMENTS, PLANTS, Sources, of};
 use crate::harness::topic::{Part, Topic};
 use crate::{
-    any_plant, calibration, catalogue, comparison, diagnosis_ground, embedded, field, gain,
-    generator, kernel, logs, measured, naming, paper, plant_peers, records, truth, watch,
+    any_plant, calibration, catalogue, comparison, diagnosis_ground, dialects, embedded, field,
+    gain, generator, kernel, logs, measured, naming, paper, plant_peers, records, truth, watch,
 };
 
 /// All topics.
@@ -207,6 +207,12 @@ pub(crate) const TOPICS: [Topic; 8] = [
                     &["crates/figures/src/logs.rs", "crates/figures/src/logs"],
                 ),
                 logs::figures,
+            ),
+            part(
+                "dialects",
+                "Dialects of files, listed and drawn: read as they are, or by the map that is proposed.",
+                dialects::SOURCES,
+                dialects::figures,
             ),
             part(
                 "measured",

@@ -2,6 +2,8 @@
 
 use core::fmt::{Display, Formatter};
 
+use gyrocal_record::InputErrorKind;
+
 use crate::error::{InstrumentError, Unfit};
 
 /// A cell of a file.
@@ -65,6 +67,40 @@ impl OwnedCell {
             Self::Seconds(value) => Cell::Seconds(*value),
             Self::Text(text) => Cell::Text(text),
             Self::Missing => Cell::Missing,
+        }
+    }
+}
+
+/// What is wrong with a cell.
+#[derive(Debug)]
+pub(crate) struct Fault {
+    /// Its column, by the order of those that were asked for.
+    pub(crate) column: usize,
+    pub(crate) kind: InputErrorKind,
+    pub(crate) expected: String,
+    pub(crate) advice: String,
+}
+
+impl Fault {
+    /// The error of a cell in a row, by its number from 0, of a file whose columns have types.
+    pub(crate) fn in_row(&self, names: &[&str], cells: &[Cell<'_>], row: usize) -> InstrumentError {
+        unfit(
+            &format!(
+                "{} in the column `{}` of row {}",
+                cells[self.column],
+                names[self.column],
+                row + 1
+            ),
+            &self.expected,
+            &self.advice,
+        )
+    }
+
+    /// The fault of a column that is behind `before` others.
+    pub(crate) fn behind(self, before: usize) -> Self {
+        Self {
+            column: self.column + before,
+            ..self
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use gyrocal_record::{Error, InputErrorKind, SourceText};
+use gyrocal_record::{Error, InputErrorKind, SourceText, is_encoding};
 use serde::{Deserialize, Serialize};
 
 use crate::error::{InstrumentError, Unfit};
@@ -219,6 +219,15 @@ impl Description {
             Some(CountScale::Each(values)) => values.into_iter().all(positive),
             Some(CountScale::Estimate(_)) | None => true,
         };
+        if self
+            .file
+            .encoding
+            .as_ref()
+            .is_some_and(|label| !is_encoding(label))
+        {
+            let expected = "an encoding of the Encoding Standard, as `utf-16le` or `latin1`";
+            return Some(("encoding", expected));
+        }
         if let Some(mistake) = self.time.mistake() {
             return Some(mistake);
         }

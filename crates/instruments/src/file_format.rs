@@ -1,5 +1,8 @@
 //! Format of the file of a log: a part of its description.
 
+use std::path::Path;
+
+use gyrocal_record::{Error, SourceText};
 use serde::{Deserialize, Serialize};
 
 /// Format of the file of a log: text in columns, or binary records.
@@ -9,6 +12,9 @@ use serde::{Deserialize, Serialize};
 pub struct FileFormat {
     /// Separator of the fields of a line.
     pub delimiter: Delimiter,
+    /// Encoding of the text by its label in the Encoding Standard: `"utf-16le"`, `"latin1"`. Without it UTF-8, or what
+    /// a byte-order mark says.
+    pub encoding: Option<String>,
     /// Beginning of lines that are comments.
     pub comment: Option<String>,
     /// Number of lines before the header, or before the first row. A preamble in front of a header that
@@ -29,10 +35,18 @@ pub struct FileFormat {
     pub binary: Option<Binary>,
 }
 
+impl FileFormat {
+    /// The text of a file of this format.
+    pub(crate) fn read(&self, path: &Path) -> Result<SourceText, Error> {
+        SourceText::read_as(path, self.encoding.as_deref())
+    }
+}
+
 impl Default for FileFormat {
     fn default() -> Self {
         Self {
             delimiter: Delimiter::Comma,
+            encoding: None,
             comment: None,
             skip_lines: 0,
             skip_rows: 0,

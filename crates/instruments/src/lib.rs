@@ -85,7 +85,9 @@ mod remedy;
 mod result_file;
 #[cfg(feature = "mcap")]
 mod ros_message;
+mod row_time;
 mod scale;
+mod selection;
 mod stop_means;
 mod stops;
 pub mod strapdown;

@@ -11,9 +11,9 @@ use gyrocal_statistics::median_interval_s;
 use crate::clock::{Clock, resampled, steady_clock};
 use crate::columns::FileColumns;
 use crate::covariates::{Saturated, refuse_saturated, saturated, temperatures_c};
-use crate::description::time::WEEK_S;
 use crate::description::{Description, Direction, Gyro, Jitter, Time, no_accelerometers};
 use crate::error::{InstrumentError, Unfit};
+use crate::row_time::RowTime;
 use crate::scale::{accel_scale, gyro_scale};
 
 pub use wild::BadSamples;
@@ -89,10 +89,8 @@ impl Log {
         description: &Description,
         at_end: AtEndOfRange,
     ) -> Result<Self, InstrumentError> {
-        let names = names(description)?;
-        let unit_s = description.time.numeric_unit_s();
-        let dated = dated(description);
-        let file = FileColumns::read(path, &description.file, &names, dated, unit_s)?;
+        let (names, time) = (names(description)?, RowTime::new(description));
+        let file = FileColumns::read(path, &description.file, &names, time)?;
         Self::from_columns(file, description, at_end)
     }
 
@@ -107,8 +105,8 @@ impl Log {
         description: &Description,
     ) -> Result<Self, InstrumentError> {
         let source = SourceText::new(text, name)?;
-        let names = names(description)?;
-        let file = FileColumns::of_text(source, &description.file, &names, dated(description))?;
+        let (names, time) = (names(description)?, RowTime::new(description));
+        let file = FileColumns::of_text(source, &description.file, &names, time)?;
         Self::from_columns(file, description, AtEndOfRange::Refused)
     }
 
@@ -166,13 +164,7 @@ impl Log {
         let columns = &file.values;
         let rows = columns.first().map_or(0, Vec::len);
         let mut others = columns[sensors(description)..].iter();
-        let stamps = description.time.column.as_ref().and_then(|_| others.next());
-        let weeks = description
-            .time
-            .week_column
-            .as_ref()
-            .and_then(|_| others.next());
-        let (time_s, clock) = times(&file, &description.time, stamps, weeks)?;
+        let (time_s, clock) = times(&file, &description.time)?;
         let interval_s = usual_interval_s(&time_s)?;
         let temperature_c = match (&description.temperature, others.len()) {
             (Some(column), 1..) => {
@@ -302,25 +294,14 @@ impl Log {
     }
 }
 
-/// Times of the rows, and how they are known.
-fn times(
-    file: &FileColumns,
-    time: &Time,
-    stamps: Option<&Vec<f64>>,
-    weeks: Option<&Vec<f64>>,
-) -> Result<(Vec<f64>, Clock), InstrumentError> {
-    let Some(stamps) = stamps else {
-        let interval_s = 1.0 / time.rate_hz.unwrap_or(1.0);
-        let rows = file.values.first().map_or(0, Vec::len);
+/// Times of the rows, which are the last column, and how they are known.
+fn times(file: &FileColumns, time: &Time) -> Result<(Vec<f64>, Clock), InstrumentError> {
+    if let Some(rate_hz) = time.rate_hz {
+        let (interval_s, rows) = (1.0 / rate_hz, file.values.first().map_or(0, Vec::len));
         let time_s = (1..=rows).map(|row| row as f64 * interval_s).collect();
         return Ok((time_s, Clock::Rate));
-    };
-    let unit_s = time.numeric_unit_s();
-    let week_s = |row: usize| weeks.map_or(0.0, |weeks| weeks[row] * WEEK_S);
-    let stamps = stamps.iter().enumerate();
-    let time_s: Vec<f64> = stamps
-        .map(|(row, stamp)| stamp * unit_s + week_s(row))
-        .collect();
+    }
+    let time_s = file.values.last().cloned().unwrap_or_default();
     refuse_backwards(file, &time_s)?;
     Ok((time_s, Clock::Stamps))
 }
@@ -330,24 +311,17 @@ fn sensors(description: &Description) -> usize {
     3 + 3 * usize::from(description.accel.is_some())
 }
 
-/// Columns of the description: gyros, accelerometers, time, GPS week, temperature, turntable.
+/// Columns of the description: gyros, accelerometers, temperature, turntable.
 fn names(description: &Description) -> Result<Vec<&str>, InstrumentError> {
     let sensors = gyro_of(description)?.columns.iter();
     let forces = description.accel.iter().flat_map(|accel| &accel.columns);
     let sensors = sensors.chain(forces);
     let mut names: Vec<&str> = sensors.map(String::as_str).collect();
-    names.extend(description.time.column.as_deref());
-    names.extend(description.time.week_column.as_deref());
     let temperature = description.temperature.as_ref();
     names.extend(temperature.map(|column| column.column.as_str()));
     let table = description.table.as_ref();
     names.extend(table.map(|table| table.column.as_str()));
     Ok(names)
-}
-
-/// Index among the columns of that with dates and times.
-fn dated(description: &Description) -> Option<usize> {
-    description.time.is_text().then(|| sensors(description))
 }
 
 fn gyro_of(description: &Description) -> Result<&Gyro, InstrumentError> {
@@ -368,8 +342,8 @@ fn refuse_backwards(file: &FileColumns, time_s: &[f64]) -> Result<(), Instrument
     };
     let found = format!("time {} s after {} s", time_s[row + 1], time_s[row]);
     let expected = "times that rise";
-    let advice = "cut the log where the clock was set back; if only the stamps are wrong, give `rate_hz` \
-                  in place of the time column";
+    let advice = "split the file in front of this line, with the header in front of both parts, and give both logs; if \
+                  only the stamps are wrong, give `rate_hz` in place of the time column";
     Err(file.error_at(
         row + 1,
         InputErrorKind::Time,

@@ -2,9 +2,10 @@
 
 use core::ops::Range;
 
-use gyrocal_record::SourceText;
+use gyrocal_record::{Error, SourceText};
 
-use crate::file_format::{Delimiter, FileFormat};
+use crate::cell::{Cell, Fault};
+use crate::file_format::{Decimal, Delimiter, FileFormat};
 
 /// A line.
 #[derive(Debug)]
@@ -15,11 +16,53 @@ pub(crate) struct LogLine<'a> {
     pub(crate) fields: Vec<(Range<usize>, &'a str)>,
 }
 
+impl<'a> LogLine<'a> {
+    /// Some of its fields, by their indices.
+    pub(crate) fn cells(&self, indices: &[usize]) -> Vec<Cell<'a>> {
+        let texts = indices.iter().map(|index| self.fields[*index].1);
+        texts.map(Cell::Text).collect()
+    }
+
+    /// Whether its last field is empty, as that behind a separator at the end of a line.
+    pub(crate) fn ends_empty(&self) -> bool {
+        self.fields.last().is_some_and(|(_, text)| text.is_empty())
+    }
+
+    /// Whether its first field is a word, or stars.
+    pub(crate) fn begins_with_word(&self) -> bool {
+        let first = self.fields.first().map_or("", |(_, text)| text);
+        first.starts_with(|sign: char| sign.is_alphabetic() || sign == '*')
+            && first.parse::<f64>().is_err()
+    }
+
+    /// Whether it begins with a word and has no number.
+    pub(crate) fn is_of_words(&self, decimal: Decimal) -> bool {
+        let mut texts = self.fields.iter().map(|(_, text)| text);
+        self.begins_with_word() && texts.all(|text| decimal.number(text).is_none())
+    }
+
+    /// The error of one of these cells.
+    pub(crate) fn error(&self, source: &SourceText, indices: &[usize], fault: Fault) -> Error {
+        let (span, text) = &self.fields[indices[fault.column]];
+        let found = match text.is_empty() {
+            true => "an empty field".to_owned(),
+            false => format!("`{text}`"),
+        };
+        source.error(
+            fault.kind,
+            span.clone(),
+            found,
+            fault.expected,
+            fault.advice,
+        )
+    }
+}
+
 /// Lines with content, after those that the format skips.
-pub(crate) fn log_lines<'a>(
+pub(crate) fn log_lines<'a, 'f>(
     source: &'a SourceText,
-    format: &'a FileFormat,
-) -> impl Iterator<Item = LogLine<'a>> {
+    format: &'f FileFormat,
+) -> impl Iterator<Item = LogLine<'a>> + use<'a, 'f> {
     let text = source.text();
     let mut at = 0;
     let lines = text.split_inclusive(['\n', '\r']).map(move |line| {
@@ -43,8 +86,12 @@ pub(crate) fn log_lines<'a>(
             comment.is_empty() || !line.trim_start().starts_with(comment)
         })
         .map(|(start, line)| {
-            let from = start + line.len() - line.trim_start().len();
-            let bare = line.trim();
+            // An empty field at the end of a line is one.
+            let is_blank = |sign: char| {
+                sign.is_whitespace() && (sign != '\t' || format.delimiter != Delimiter::Tab)
+            };
+            let from = start + line.len() - line.trim_start_matches(is_blank).len();
+            let bare = line.trim_matches(is_blank);
             LogLine {
                 span: from..from + bare.len(),
                 fields: fields(bare, from, format.delimiter),

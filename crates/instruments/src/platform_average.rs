@@ -3,7 +3,7 @@
 use std::io::{BufRead, Read};
 use std::path::Path;
 
-use gyrocal_record::{Error, Record, SourceText, open_content};
+use gyrocal_record::{Error, Record, SourceText, open_text};
 
 use crate::description::Description;
 use crate::error::{InstrumentError, Unfit};
@@ -63,7 +63,7 @@ pub fn average_file(
         })?;
         return means.file(&name, description);
     }
-    let mut content = open_content(path)?;
+    let mut content = open_text(path, description.file.encoding.as_deref())?;
     let mut reader = RowReader::new(description)?;
     let mut means = Means::new(interval_s);
     let mut lines = 0;
@@ -82,7 +82,7 @@ pub fn average_file(
                         line.span,
                         format!("time {} s after {last_s} s", row.time_s),
                         "times that rise",
-                        "sort the rows by time, or cut the log where the clock was set back",
+                        "sort the rows by time; of a clock that was set back `--split` in place of `--average` writes each part, and `calibrate --average` takes them",
                     )
                     .into()
             })

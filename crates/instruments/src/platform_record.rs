@@ -2,18 +2,16 @@
 
 use std::path::Path;
 
-use gyrocal_record::{Error, InputErrorKind, Record, RecordFile, SourceText};
+use gyrocal_record::{Error, InputErrorKind, Record, RecordFile, SourceText, shell_quoted};
 use gyrocal_statistics::median_interval_s;
 
-use crate::cell::Cell;
-use crate::columns::Selection;
 use crate::description::temperature::TemperatureUnit;
 use crate::description::{Description, Jitter, Temperature};
 use crate::error::InstrumentError;
 use crate::file_format::FileFormat;
 use crate::log_lines::{LogLine, log_lines};
 use crate::platform_row::{PlatformRow, Row};
-use crate::proposal::propose_map;
+use crate::selection::Selection;
 use crate::typed_file::TypedFile;
 
 /// Intervals longer than this many median ones are gaps, which are not interpolated.
@@ -34,11 +32,12 @@ pub fn read_record(path: &Path, description: &Description) -> Result<RecordFile,
         let record = finished(typed.record(path, description)?, description);
         return Ok(RecordFile::of_record(record, &path.display().to_string()));
     }
-    parse_record(SourceText::read(path)?, description)
+    parse_record(description.file.read(path)?, description)
 }
 
 /// Reads the record of a stable platform as [`RecordFile::read`] does, or by a description. Without one a file
-/// of Parquet or MATLAB has the columns of a record, and the error of another header says what to describe.
+/// of Parquet or MATLAB has the columns of a record, and the error of another header names the command that
+/// proposes a description.
 ///
 /// # Errors
 ///
@@ -61,15 +60,17 @@ pub fn read_any(
         }
         return read_record(path, &description);
     }
-    let source = SourceText::read(path)?;
-    let text = source.clone();
-    RecordFile::of(source).map_err(|error| match error {
-        Error::Input(mut input) if input.kind == InputErrorKind::Header => {
-            if let Some(map) = propose_map(&text) {
-                let first = input.advice.trim_end_matches('.');
-                input.advice =
-                    format!("{first}; or read it by a map, `--columns MAP.toml`, with {map}");
-            }
+    let read = SourceText::read(path).and_then(RecordFile::of);
+    read.map_err(|error| match error {
+        Error::Input(mut input) if matches!(input.kind, InputErrorKind::Header | InputErrorKind::NotUtf8) => {
+            // A name that is nearly right is told first.
+            let near = Some(&input.advice).filter(|advice| advice.starts_with("did you mean"));
+            let near = near.map_or_else(String::new, |near| format!("{near}; if it is a file of another program, "));
+            let path = shell_quoted(&path.display().to_string());
+            input.advice = format!(
+                "{near}`gyrocal import csv {path} --propose MAP.toml` writes a map of its columns and units; give it with \
+                 `--columns MAP.toml`"
+            );
             Error::Input(input).into()
         }
         other => other.into(),
@@ -100,12 +101,21 @@ pub fn parse_record(
         Some(selection) => selection.header.clone(),
         None => 0..0,
     };
-    let rows = record.len();
-    let record = finished(record, description);
-    if record.len() != rows || description.time.jitter == Jitter::Resample {
-        return Ok(RecordFile::of_record(record, source.name()));
-    }
-    Ok(RecordFile::of_rows(record, source, places, header))
+    let note = reader
+        .selection
+        .and_then(|selection| selection.repeated_note(source.name()));
+    let name = source.name().to_owned();
+    let file = match description.time.jitter {
+        Jitter::Resample => {
+            let read = RecordFile::of_rows(record, source, places, header);
+            let even = RecordFile::of_record(finished(read.record().clone(), description), &name);
+            read.notes()
+                .into_iter()
+                .fold(even, |even, note| even.with_note(Some(note)))
+        }
+        _ => RecordFile::of_rows(finished(record, description), source, places, header),
+    };
+    Ok(file.with_note(note))
 }
 
 /// Rows of the text of a record, which may come in blocks of whole lines.
@@ -146,7 +156,7 @@ impl<'a> RowReader<'a> {
         let first = self.selection.is_none();
         let later = self.later.clone();
         let mut lines = log_lines(source, if first { format } else { &later }).peekable();
-        let selection = match self.selection.take() {
+        let mut selection = match self.selection.take() {
             Some(selection) => selection,
             None => Selection::find(source, format, self.row.names(), &mut lines)?,
         };
@@ -154,23 +164,10 @@ impl<'a> RowReader<'a> {
             if !selection.takes(source, format, &line)? {
                 continue;
             }
-            let fields: Vec<Cell<'_>> = selection
-                .indices
-                .iter()
-                .map(|index| Cell::Text(line.fields[*index].1))
-                .collect();
-            let row = self.row.of(&fields, self.rows).map_err(|fault| {
-                let (span, text) = &line.fields[selection.indices[fault.column]];
-                source.error(
-                    fault.kind,
-                    span.clone(),
-                    match text.is_empty() {
-                        true => "an empty field".to_owned(),
-                        false => format!("`{text}`"),
-                    },
-                    fault.expected,
-                    fault.advice,
-                )
+            let row = self.row.of(&line.cells(&selection.indices), self.rows);
+            let row = row.map_err(|fault| {
+                let error = line.error(source, &selection.indices, fault);
+                selection.or_second_header(source, format, &line, error)
             })?;
             self.rows += 1;
             take(row, line)?;

@@ -1,10 +1,10 @@
 //! The line of a description that makes a refused place of a file readable.
 
-use crate::date_time::seconds_of;
+use crate::date_time::DateTimes;
 use crate::file_format::{Decimal, Delimiter, FileFormat};
 
 /// Beginnings of comments that programs write.
-const COMMENTS: [&str; 5] = ["#", "%", "//", "!", "*"];
+pub(crate) const COMMENTS: [&str; 5] = ["#", "%", "//", "!", "*"];
 
 /// Words that programs write for a missing value.
 const MISSING: [&str; 8] = ["na", "n/a", "null", "none", "-", "--", "#n/a", "missing"];
@@ -83,10 +83,10 @@ pub(crate) fn of_number(format: &FileFormat, text: &str) -> Option<String> {
 
 /// Remedy for a time that is no number.
 pub(crate) fn of_time(format: &FileFormat, text: &str) -> Option<String> {
-    match seconds_of(text) {
-        Some(_) => Some(add("unit = \"rfc3339\"", "time")),
-        None => of_number(format, text),
+    if DateTimes::rfc3339().seconds(text).is_some() {
+        return Some(add("unit = \"rfc3339\"", "time"));
     }
+    of_number(format, text)
 }
 
 /// Remedy for a value that is no number and may be missing, in the row of this number from 0.

@@ -6,12 +6,12 @@ use std::path::Path;
 use gyrocal_record::{Record, open_content};
 
 use crate::cell::{Cell, TakeCells, unfit};
-use crate::date_time::seconds_of;
 use crate::description::Description;
 use crate::error::InstrumentError;
 use crate::file_format::{FileFormat, Only};
 use crate::matlab_file;
 use crate::platform_row::{PlatformRow, Row};
+use crate::row_time::RowTime;
 
 /// First bytes of a file of Parquet and of MCAP.
 const PARQUET: &[u8] = b"PAR1";
@@ -50,19 +50,14 @@ impl TypedFile {
         description: &Description,
         mut take: impl FnMut(Row) -> Result<(), InstrumentError>,
     ) -> Result<(), InstrumentError> {
-        let platform_row = PlatformRow::new(description)?;
+        let mut platform_row = PlatformRow::new(description)?;
+        let names = platform_row.names().to_vec();
         let only = description.file.only.as_ref();
         let mut number = 0;
-        self.for_each(path, platform_row.names(), only, &mut |cells| {
-            let row = platform_row.of(cells, number).map_err(|fault| {
-                let name = platform_row.names()[fault.column];
-                let cell = cells[fault.column];
-                unfit(
-                    &format!("{cell} in the column `{name}` of row {}", number + 1),
-                    fault.expected,
-                    &fault.advice,
-                )
-            })?;
+        self.for_each(path, &names, only, &mut |cells| {
+            let row = platform_row
+                .of(cells, number)
+                .map_err(|fault| fault.in_row(&names, cells, number))?;
             number += 1;
             take(row)
         })
@@ -85,36 +80,41 @@ impl TypedFile {
         }
     }
 
-    /// The columns `names`, all numbers finite. Of dates and times, in the column `dated`, the seconds; of time
-    /// stamps their number in units of `unit_s`.
+    /// The columns `names`, all numbers finite, and behind them the time of each row \[s\] if it has columns.
     pub(crate) fn columns(
         self,
         path: &Path,
         format: &FileFormat,
         names: &[&str],
-        dated: Option<usize>,
-        unit_s: f64,
+        mut time: RowTime<'_>,
     ) -> Result<Vec<Vec<f64>>, InstrumentError> {
-        let mut values = vec![Vec::new(); names.len()];
-        self.for_each(path, names, format.only.as_ref(), &mut |cells| {
+        let mut all = names.to_vec();
+        all.extend(time.names());
+        let mut values = vec![Vec::new(); all.len().min(names.len() + 1)];
+        let mut row = 0;
+        self.for_each(path, &all, format.only.as_ref(), &mut |cells| {
+            let (cells, times) = cells.split_at(names.len());
             for (at, (column, cell)) in values.iter_mut().zip(cells).enumerate() {
                 let number = match cell {
-                    Cell::Text(text) if dated == Some(at) => seconds_of(text),
                     Cell::Text(text) => format.decimal.number(text),
                     Cell::Number(value) => Some(*value),
-                    Cell::Seconds(seconds) => Some(seconds / unit_s),
+                    Cell::Seconds(seconds) => Some(*seconds),
                     Cell::Missing => None,
                 };
                 let Some(number) = number.filter(|value| value.is_finite()) else {
-                    let row = column.len() + 1;
                     return Err(unfit(
-                        &format!("{cell} in the column `{}` of row {row}", names[at]),
+                        &format!("{cell} in the column `{}` of row {}", names[at], row + 1),
                         "a finite number",
                         "cut the log before the first sample that is missing",
                     ));
                 };
                 column.push(number);
             }
+            if let Some(column) = values.get_mut(names.len()) {
+                let time_s = time.of(times, row);
+                column.push(time_s.map_err(|fault| fault.in_row(&all[names.len()..], times, row))?);
+            }
+            row += 1;
             Ok(())
         })?;
         match values.first().is_none_or(Vec::is_empty) {

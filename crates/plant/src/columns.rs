@@ -15,10 +15,10 @@
 //! A value is factor × number + offset. An output without a value, or `nan`, is missing.
 
 use std::collections::BTreeMap;
-use std::io::{self, ErrorKind};
+use std::io::{self, Read};
 use std::path::Path;
 
-use gyrocal_record::{Error, read_content};
+use gyrocal_record::{Error, open_text};
 use serde::Deserialize;
 
 use crate::description::{Description, Output};
@@ -80,18 +80,20 @@ fn refuse(origin: &str, problem: String, advice: impl Into<String>) -> PlantErro
     }
 }
 
-/// The text of an input file, which may be compressed.
+/// The text of an input file, which may be compressed, or UTF-16 with a byte-order mark.
 pub(crate) fn read_text(path: &Path) -> Result<String, PlantError> {
     let unreadable = |reason| PlantError::Unreadable {
         path: path.to_owned(),
         reason,
     };
-    let bytes = read_content(path).map_err(|error| match error {
-        Error::Unreadable { reason, .. } => unreadable(reason),
-        other => unreadable(io::Error::other(other)),
-    })?;
-    String::from_utf8(bytes)
-        .map_err(|error| unreadable(io::Error::new(ErrorKind::InvalidData, error)))
+    let mut text = String::new();
+    let read = open_text(path, None).map_err(|error| match error {
+        Error::Unreadable { reason, .. } => reason,
+        other => io::Error::other(other),
+    });
+    read.and_then(|mut read| read.read_to_string(&mut text))
+        .map_err(unreadable)?;
+    Ok(text)
 }
 
 impl ColumnMap {

@@ -141,12 +141,11 @@ impl Model {
             let others = fitted.without(&rows)?;
             let simulated = others.simulated();
             for (output, own) in left_out.iter_mut().enumerate() {
-                own[part] = squares(record, &simulated, output, &rows);
+                own[part] = squares(record, &simulated, output, rows.iter().cloned().flatten());
             }
         }
         let simulated = fitted.simulated();
-        let all = [0..record.len()];
-        let whole = (0..outputs).map(|output| squares(record, &simulated, output, &all));
+        let whole = (0..outputs).map(|output| squares(record, &simulated, output, 0..record.len()));
         Ok(Self {
             whole: whole.collect(),
             left_out,
@@ -196,9 +195,9 @@ impl Model {
         });
         let outputs = self.fitted.loaded().description.outputs.iter();
         let errors = outputs.enumerate().map(|(index, output)| {
-            let later = predicted.as_ref().map(|(later, simulated)| {
-                rms(&[squares(later, simulated, index, &[0..later.len()])])
-            });
+            let later = predicted
+                .as_ref()
+                .map(|(later, simulated)| rms(&[squares(later, simulated, index, 0..later.len())]));
             PathError {
                 output: output.id.clone(),
                 unit: output.unit.clone(),
@@ -229,11 +228,10 @@ fn squares(
     record: &PlantRecord,
     simulated: &[f64],
     output: usize,
-    rows: &[Range<usize>],
+    rows: impl Iterator<Item = usize>,
 ) -> (f64, usize) {
     let outputs = simulated.len() / record.len().max(1);
-    let places = rows.iter().cloned().flatten();
-    let errors = places.map(|row| {
+    let errors = rows.map(|row| {
         let place = row * outputs + output;
         // A missing reading is NaN; a simulation that leaves the numbers is infinitely wrong.
         let is_missing = record.outputs[place].is_nan();

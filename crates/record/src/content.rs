@@ -6,6 +6,8 @@ use std::io::{self, BufRead, BufReader, Cursor, Read};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use encoding_rs::Encoding;
+use encoding_rs_io::DecodeReaderBytesBuilder;
 use flate2::bufread::MultiGzDecoder;
 use ruzstd::decoding::StreamingDecoder;
 use sha2::{Digest, Sha256};
@@ -47,6 +49,34 @@ pub fn keep_streams() {
 /// [`Error::Unreadable`]; of a stream too, unless [`keep_streams`] was called.
 pub fn open_content(path: &Path) -> Result<Box<dyn BufRead>, Error> {
     open(path).map_err(|reason| unreadable(path, reason))
+}
+
+/// Opens an input file as [`open_content`] does, decoded to UTF-8 from the encoding of a label of the Encoding
+/// Standard (`utf-16le`, `latin1`). A byte-order mark of UTF-16 takes precedence; without both the bytes are as they stand.
+///
+/// # Errors
+///
+/// As [`open_content`].
+pub fn open_text(path: &Path, encoding: Option<&str>) -> Result<Box<dyn BufRead>, Error> {
+    Ok(Box::new(BufReader::new(decoded(
+        open_content(path)?,
+        encoding,
+    ))))
+}
+
+/// Whether a label is that of an encoding.
+#[must_use]
+pub fn is_encoding(label: &str) -> bool {
+    Encoding::for_label_no_replacement(label.as_bytes()).is_some()
+}
+
+/// The bytes of a text as UTF-8.
+pub(crate) fn decoded<R: Read>(bytes: R, encoding: Option<&str>) -> impl Read + use<R> {
+    DecodeReaderBytesBuilder::new()
+        .encoding(encoding.and_then(|label| Encoding::for_label(label.as_bytes())))
+        .bom_override(true)
+        .utf8_passthru(true)
+        .build(bytes)
 }
 
 /// The whole content of an input file, decompressed.
@@ -172,6 +202,43 @@ mod tests {
             encoder.finish().unwrap();
         }
         assert_eq!(read_content(&path).unwrap(), b"a,b\n1,2\n");
+    }
+
+    #[test]
+    fn texts_of_other_encodings_are_decoded() {
+        let utf16 = |text: &str, big: bool| -> Vec<u8> {
+            let units = text.encode_utf16();
+            let bytes = units.map(|unit| {
+                if big {
+                    unit.to_be_bytes()
+                } else {
+                    unit.to_le_bytes()
+                }
+            });
+            bytes.flatten().collect()
+        };
+        let text = "a,°\n1,Ċ\n";
+        let marked = format!("\u{feff}{text}");
+        for (bytes, encoding) in [
+            (utf16(&marked, false), None),
+            (utf16(&marked, true), None),
+            (utf16(text, false), Some("utf-16le")),
+            (utf16(text, true), Some("utf-16be")),
+            (marked.clone().into_bytes(), None),
+            (text.as_bytes().to_vec(), None),
+        ] {
+            let mut read = String::new();
+            decoded(&bytes[..], encoding)
+                .read_to_string(&mut read)
+                .unwrap();
+            assert_eq!(read.trim_start_matches('\u{feff}'), text, "{encoding:?}");
+        }
+        let mut read = String::new();
+        decoded(&b"T [\xb0C]"[..], Some("latin1"))
+            .read_to_string(&mut read)
+            .unwrap();
+        assert_eq!(read, "T [°C]");
+        assert!(is_encoding("utf-16le") && !is_encoding("utf-17"));
     }
 
     #[test]

@@ -112,7 +112,7 @@ fn refuse_other_separators(source: &SourceText, line: &Line<'_>) -> Result<(), E
         place..place + 1,
         "fields separated by another character",
         "fields separated by commas",
-        "export the file again with commas, and with points in decimal numbers",
+        "write commas, and points in decimal numbers",
     ))
 }
 

@@ -55,6 +55,7 @@
 
 mod bench;
 mod bound;
+mod clock;
 mod coefficient_table;
 mod content;
 mod document;
@@ -88,7 +89,8 @@ mod white_noise;
 
 pub use bench::{Bench, Prior};
 pub use bound::Bound;
-pub use content::{keep_streams, open_content, read_content};
+pub use clock::{ClockFault, restarts};
+pub use content::{is_encoding, keep_streams, open_content, open_text, read_content};
 pub use document::Document;
 pub use error::{Error, InputError, InputErrorKind};
 pub use extension_report::{ExtensionReport, LeftOut};

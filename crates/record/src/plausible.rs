@@ -52,7 +52,7 @@ pub(crate) fn refuse_too_few(
     ))
 }
 
-fn counted(rows: usize) -> String {
+pub(crate) fn counted(rows: usize) -> String {
     let ending = if rows == 1 { "" } else { "s" };
     format!("{rows} row{ending}")
 }

@@ -1,6 +1,7 @@
 //! The record: accelerometer samples of a platform in the space-stable state.
 
 use std::io;
+use std::ops::Range;
 use std::path::Path;
 
 use crate::error::Error;
@@ -37,6 +38,17 @@ impl Record {
             rest.accel_g[row][axis] = f64::NAN;
         }
         rest
+    }
+
+    /// Some of its rows.
+    #[must_use]
+    pub fn part(&self, rows: Range<usize>) -> Self {
+        let temperature_c = self.temperature_c.as_ref();
+        Self {
+            time_s: self.time_s[rows.clone()].to_vec(),
+            accel_g: self.accel_g[rows.clone()].to_vec(),
+            temperature_c: temperature_c.map(|all| all[rows].to_vec()),
+        }
     }
 
     /// Writes the record whole or not at all. Reading it gives the same numbers.

@@ -3,8 +3,9 @@
 use std::ops::Range;
 use std::path::Path;
 
+use crate::clock::{ClockFault, leave_out_repeated};
 use crate::error::{Error, InputErrorKind};
-use crate::plausible::{Codes, check_intervals, check_norms, check_stuck, refuse_too_few};
+use crate::plausible::{Codes, check_intervals, check_norms, check_stuck, counted, refuse_too_few};
 use crate::printable::printable_line;
 use crate::record::Record;
 use crate::rows::{Form, parse};
@@ -23,6 +24,7 @@ pub struct RecordFile {
     source: SourceText,
     places: Vec<Range<usize>>,
     header: Range<usize>,
+    notes: Vec<String>,
 }
 
 impl RecordFile {
@@ -51,29 +53,41 @@ impl RecordFile {
     /// [`Error::Input`] if it is not in the format of a record.
     pub fn of(source: SourceText) -> Result<Self, Error> {
         let (record, places, header) = parse(&source, Form::Lenient)?;
-        Ok(Self {
-            record,
-            source,
-            places,
-            header,
-        })
+        Ok(Self::of_rows(record, source, places, header))
     }
 
     /// Takes a record that was read from a text of another format, with the places of its rows and of its
     /// header.
     #[must_use]
     pub fn of_rows(
-        record: Record,
+        mut record: Record,
         source: SourceText,
-        places: Vec<Range<usize>>,
+        mut places: Vec<Range<usize>>,
         header: Range<usize>,
     ) -> Self {
+        let repeated = leave_out_repeated(&mut record, &mut places);
+        let notes = repeated.first().map(|first| {
+            let (line, _) = source.line_and_column(first.start);
+            format!(
+                "{}:{line}: this row repeats the row before it in every value, as {} of the record do. They are left out",
+                printable_line(source.name()),
+                counted(repeated.len())
+            )
+        });
         Self {
             record,
             source,
             places,
             header,
+            notes: notes.into_iter().collect(),
         }
+    }
+
+    /// It with something more to tell the user.
+    #[must_use]
+    pub fn with_note(mut self, note: Option<String>) -> Self {
+        self.notes.extend(note);
+        self
     }
 
     /// Takes a record in memory as if it stood in a file; errors call it `name`. Its rows have no lines;
@@ -85,6 +99,7 @@ impl RecordFile {
             source: SourceText::of_memory(name),
             places: Vec::new(),
             header: 0..0,
+            notes: Vec::new(),
         }
     }
 
@@ -100,10 +115,15 @@ impl RecordFile {
         self.source.name()
     }
 
+    /// What there is to tell of its text: rows that were left out, a last line that seems cut off.
+    #[must_use]
+    pub fn notes(&self) -> Vec<String> {
+        self.notes.iter().cloned().chain(self.cut_note()).collect()
+    }
+
     /// A note on a last line that seems cut off within its last number: the file ends without a line
     /// feed, and the last field is shorter than that of every other row. `None` otherwise.
-    #[must_use]
-    pub fn cut_note(&self) -> Option<String> {
+    fn cut_note(&self) -> Option<String> {
         const FEWEST_ROWS: usize = 20;
         let (last, others) = self.places.split_last()?;
         let text = self.source.text();
@@ -150,18 +170,14 @@ impl RecordFile {
     ///
     /// [`Error::Input`] at the first row that does not.
     pub fn into_rising(self) -> Result<Record, Error> {
-        let times = &self.record.time_s;
-        let Some(row) = times.windows(2).position(|pair| pair[1] <= pair[0]) else {
+        let Some(fault) = ClockFault::of(&self.record.time_s) else {
             return Ok(self.record);
         };
-        let place = self.places.get(row + 1).cloned().unwrap_or(0..0);
-        Err(self.source.error(
-            InputErrorKind::Time,
-            place,
-            format!("time {} s after {} s", times[row + 1], times[row]),
-            format!("a time greater than {} s", times[row]),
-            "sort the rows by time and keep one of those that repeat",
-        ))
+        let place = self.places.get(fault.row).cloned().unwrap_or(0..0);
+        let kind = InputErrorKind::Time;
+        Err(self
+            .source
+            .error(kind, place, fault.found, "times that rise", fault.advice))
     }
 
     /// The record, if it is one that [`Record::read`] takes: times rise, and specific force is of gravity's
@@ -228,7 +244,7 @@ mod tests {
 
     #[test]
     fn a_sound_record_is_one_that_is_read_strictly() {
-        for rows in ["0,0,0,1\n60,0,0,9.81\n", "0,0,0,1\n0,0,0,1\n", ""] {
+        for rows in ["0,0,0,1\n60,0,0,9.81\n", "0,0,0,1\n0,0,1,0\n", ""] {
             let strict = Record::parse(&format!("\n{HEADER}\n{rows}"), "r.csv");
             let sound = file(rows).into_sound();
             assert_eq!(

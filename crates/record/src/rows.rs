@@ -3,6 +3,7 @@
 use std::ops::Range;
 use std::path::Path;
 
+use crate::clock::{ClockFault, leave_out_repeated};
 use crate::error::{Error, InputErrorKind};
 use crate::fields::{Field, Line, Lines};
 use crate::header::Header;
@@ -55,7 +56,9 @@ fn read_with_places(
     least: usize,
     codes: Codes,
 ) -> Result<(Record, Vec<Range<usize>>), Error> {
-    let (record, places, header) = parse(source, Form::Strict)?;
+    let (mut record, mut places, header) = parse(source, Form::Strict)?;
+    leave_out_repeated(&mut record, &mut places);
+    check_times(&record, source, &places)?;
     refuse_too_few(&record, source, places.last().unwrap_or(&header), least)?;
     check_norms(&record, source, &places, codes)?;
     Ok((record, places))
@@ -132,9 +135,6 @@ fn push_row(
         Ok(number)
     };
     let time_s = finite(header.time)?;
-    if form == Form::Strict {
-        check_time(record, source, &fields[header.time], time_s)?;
-    }
     let mut accel_g = [0.0; 3];
     for (component, field) in accel_g.iter_mut().zip(header.accel) {
         *component = if form == Form::Lenient && fields[field].text.trim().is_empty() {
@@ -155,33 +155,29 @@ fn push_row(
 const CUT_ADVICE: &str = "the file ends within this line, as if its writer or a copy was stopped: \
     copy the file again, or delete this line";
 
-/// Refuses a time that does not rise, or lies ages after the first.
-fn check_time(
-    record: &Record,
-    source: &SourceText,
-    field: &Field<'_>,
-    time_s: f64,
-) -> Result<(), Error> {
-    if let Some(last) = record.time_s.last().filter(|last| time_s <= **last) {
-        return Err(source.error(
-            InputErrorKind::Time,
-            field.span.clone(),
-            format!("time {time_s} s after {last} s"),
-            format!("a time greater than {last} s"),
-            "sort the rows by time and keep one of those that repeat",
-        ));
+/// Refuses times that do not rise, and one that lies ages after the first.
+fn check_times(record: &Record, source: &SourceText, places: &[Range<usize>]) -> Result<(), Error> {
+    let error = |row: usize, found: String, expected: &str, advice: &str| {
+        let place = places.get(row).cloned().unwrap_or(0..0);
+        Err(source.error(InputErrorKind::Time, place, found, expected, advice))
+    };
+    if let Some(fault) = ClockFault::of(&record.time_s) {
+        return error(fault.row, fault.found, "times that rise", &fault.advice);
     }
-    let first_s = record.time_s.first().copied().unwrap_or(time_s);
-    if time_s - first_s > LONGEST_S {
-        return Err(source.error(
-            InputErrorKind::Time,
-            field.span.clone(),
-            format!("time {time_s:?} s in a record that starts at {first_s:?} s"),
+    let first_s = record.time_s.first().copied().unwrap_or(0.0);
+    let is_late = |time_s: &f64| time_s - first_s > LONGEST_S;
+    match record.time_s.iter().position(is_late) {
+        Some(row) => error(
+            row,
+            format!(
+                "time {:?} s in a record that starts at {first_s:?} s",
+                record.time_s[row]
+            ),
             "a record of at most a hundred years",
             "time_s is in seconds: divide milliseconds by 1e3, nanoseconds by 1e9",
-        ));
+        ),
+        None => Ok(()),
     }
-    Ok(())
 }
 
 fn not_a_number(source: &SourceText, field: &Field<'_>, expected: &str) -> Error {

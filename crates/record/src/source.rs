@@ -1,9 +1,10 @@
 //! The text of an input file, and the way from a byte offset to line and column.
 
+use std::io::Read;
 use std::ops::Range;
 use std::path::Path;
 
-use crate::content::read_content;
+use crate::content::{decoded, open_text};
 use crate::error::{Error, InputError, InputErrorKind};
 use crate::excerpt::Excerpt;
 use crate::printable::bounded;
@@ -18,14 +19,30 @@ pub struct SourceText {
 }
 
 impl SourceText {
-    /// Reads a file as UTF-8 text; gzip and Zstandard are decompressed.
+    /// Reads a file as UTF-8 text, or as UTF-16 if a byte-order mark says so; gzip and Zstandard are decompressed.
     ///
     /// # Errors
     ///
     /// [`Error::Unreadable`] if the operating system refuses, [`Error::Input`] if the file has
     /// no content or is not UTF-8.
     pub fn read(path: &Path) -> Result<Self, Error> {
-        Self::from_bytes(read_content(path)?, &path.display().to_string())
+        Self::read_as(path, None)
+    }
+
+    /// Reads a file as text of an encoding, by its label in the Encoding Standard; without one as [`Self::read`].
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::read`].
+    pub fn read_as(path: &Path, encoding: Option<&str>) -> Result<Self, Error> {
+        let mut bytes = Vec::new();
+        open_text(path, encoding)?
+            .read_to_end(&mut bytes)
+            .map_err(|reason| Error::Unreadable {
+                path: path.to_owned(),
+                reason,
+            })?;
+        Self::from_utf8(bytes, &path.display().to_string())
     }
 
     /// Takes a block of whole lines out of a file, which has `lines_before` lines in front of it.
@@ -43,12 +60,19 @@ impl SourceText {
         })
     }
 
-    /// Takes the content of a file as UTF-8 text.
+    /// Takes the content of a file as UTF-8 text, or as UTF-16 if a byte-order mark says so.
     ///
     /// # Errors
     ///
     /// [`Error::Input`] if there is no content or if it is not UTF-8.
     pub fn from_bytes(bytes: Vec<u8>, name: &str) -> Result<Self, Error> {
+        let mut text = Vec::with_capacity(bytes.len());
+        // Reading from memory does not fail; what follows tells an empty text.
+        let _ = decoded(&bytes[..], None).read_to_end(&mut text);
+        Self::from_utf8(text, name)
+    }
+
+    fn from_utf8(bytes: Vec<u8>, name: &str) -> Result<Self, Error> {
         let text = match String::from_utf8(bytes) {
             Ok(text) => text,
             Err(error) => return Err(not_utf8(error.as_bytes(), name, 0)),
@@ -188,6 +212,8 @@ fn not_utf8(bytes: &[u8], name: &str, lines_before: usize) -> Error {
         offset..offset,
         found,
         "UTF-8 text",
-        "save the file as UTF-8; spreadsheets and binary files are not read, but for MATLAB, Parquet and MCAP",
+        "save the file as UTF-8, or give `encoding` in `[file]` of a map of its columns (`--columns MAP.toml`), as \
+         `encoding = \"latin1\"` or `\"utf-16le\"`; spreadsheets and binary files are not read, but for MATLAB, Parquet \
+         and MCAP",
     )
 }

@@ -1,10 +1,10 @@
 //! Order of the times.
 
-use gyrocal_record::Record;
+use gyrocal_record::{ClockFault, Record};
 
 use crate::finding::SetupFinding;
 use crate::kind::SetupKind;
-use crate::text::{number, row, rows};
+use crate::text::row;
 
 /// Times that do not rise, and columns of other lengths than the times.
 pub(crate) fn find(record: &Record) -> Vec<SetupFinding> {
@@ -39,20 +39,19 @@ pub(crate) fn find(record: &Record) -> Vec<SetupFinding> {
         wrong.insert(0, 0);
     }
     if let (Some(first), Some(last)) = (wrong.first(), wrong.last()) {
-        let description = format!(
-            "Time does not rise at row {}. Sort the rows by time, and keep one of those that \
-             repeat.",
-            row(*first)
+        let fault = ClockFault::of(&record.time_s);
+        let (found, advice) = fault.map_or_else(
+            || {
+                (
+                    "a time that is not finite".to_owned(),
+                    "give every row a time".to_owned(),
+                )
+            },
+            |fault| (fault.found, fault.advice),
         );
-        let before_s = first
-            .checked_sub(1)
-            .map_or(f64::NAN, |at| record.time_s[at]);
-        let evidence = format!(
-            "{} out of order, the first at {} s after {} s",
-            rows(wrong.len()),
-            number(record.time_s[*first]),
-            number(before_s)
-        );
+        let advice = advice[..1].to_uppercase() + &advice[1..];
+        let description = format!("Time does not rise at row {}. {advice}.", row(*first));
+        let evidence = format!("found {found}");
         findings.push(
             SetupFinding::new(SetupKind::Clock, description, evidence)
                 .stopping()

@@ -1,72 +1,173 @@
-//! `gyrocal import csv`: the record of a stable platform from a described file.
+//! `gyrocal import csv`: the record of a stable platform from a described file, and the proposal of a description.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use gyrocal_document::{Screen, Standing};
-use gyrocal_instruments::{Description, InstrumentError, average_file, read_record};
-use gyrocal_record::{Record, ResultTable, printable_path, shell_quoted};
+use gyrocal_instruments::{
+    AveragedRecordFile, Description, average_file, parse_record, propose_map,
+};
+use gyrocal_record::{
+    Record, RecordFile, ResultTable, SourceText, printable_path, restarts, shell_quoted,
+};
 
 use crate::measured::unusable;
 use crate::numbers::positive;
 use crate::outputs::refuse_overlap;
+use crate::records::Map;
 use crate::{Failure, Reply};
 
 /// A table of a stable platform in another format: CSV of any dialect, plain or compressed, MATLAB, Parquet,
 /// MCAP.
 ///
-/// Columns, units, axes and the dialect are those of the map. With --average a text is read in pieces, so
-/// that its file may be larger than memory.
+/// Columns, units, axes and the dialect are those of the map, which --propose writes from the names and the
+/// values of a text. With --average a text is read in pieces, so that its file may be larger than memory.
 #[derive(Debug, Args)]
 pub(super) struct TableArguments {
     /// The table: CSV, also compressed by gzip or Zstandard; MATLAB; with their features Parquet and MCAP.
     log: PathBuf,
-    /// Map of its columns (TOML); docs/formats.md has every key.
-    #[arg(long, value_name = "MAP.toml")]
-    columns: PathBuf,
+    #[command(flatten)]
+    map: Map,
+    /// Write a map of the table instead: separator, encoding, time, specific force, temperature and their units, as
+    /// names and values suggest.
+    #[arg(long, value_name = "MAP.toml", conflicts_with_all = ["columns", "out"])]
+    propose: Option<PathBuf>,
     /// Write the record; as Parquet if the name ends in .parquet.
-    #[arg(long, value_name = "RECORD.csv")]
-    out: PathBuf,
+    #[arg(long, value_name = "RECORD.csv", required_unless_present = "propose")]
+    out: Option<PathBuf>,
+    /// Write a record of each part of a table whose clock goes back: RECORD.1.csv, RECORD.2.csv and so on.
+    #[arg(long, requires = "out")]
+    split: bool,
     /// Average over intervals of this length, 10 s at most; `calibrate --average` takes longer ones.
-    #[arg(long, value_name = "SECONDS", value_parser = positive)]
+    #[arg(long, value_name = "SECONDS", value_parser = positive, conflicts_with_all = ["split", "propose"])]
     average: Option<f64>,
 }
 
 /// Runs the command.
 pub(super) fn run(arguments: &TableArguments) -> Result<Reply, Failure> {
-    let inputs = [&*arguments.log, &*arguments.columns];
-    refuse_overlap(&inputs, &[("--out", Some(&arguments.out))])?;
-    let (record, rows) = read(arguments).map_err(|error| unusable(&arguments.log, error))?;
-    let text = record.to_csv(&arguments.out)?;
-    let is_parquet = arguments.out.extension().is_some_and(|it| it == "parquet");
-    let content = match is_parquet {
-        true => ResultTable::of_record(&record).content(&arguments.out)?,
-        false => text.into_bytes(),
-    };
+    match (&arguments.propose, &arguments.out) {
+        (Some(map), _) => propose(&arguments.log, map),
+        (None, Some(out)) => import(arguments, out),
+        (None, None) => Ok(Reply::default()),
+    }
+}
+
+/// Writes a map, once the file is read by it.
+fn propose(log: &Path, map: &Path) -> Result<Reply, Failure> {
+    refuse_overlap(&[log], &[("--propose", Some(map))])?;
+    let of_log = |error| unusable(log, error);
+    let text = propose_map(log).map_err(of_log)?;
+    let description = Description::parse(&text, &map.display().to_string())?;
+    let source = SourceText::read_as(log, description.file.encoding.as_deref())?;
+    let file = parse_record(source, &description).map_err(of_log)?;
+    let record = file.record();
     let what = format!(
-        "{} rows over {:.1} s, from {rows} of {}",
+        "by it {} has {} rows over {:.1} s",
+        printable_path(log),
         record.len(),
-        record.duration_s(),
-        printable_path(&arguments.log)
+        record.duration_s()
     );
-    let mut screen = Screen::new(Standing::Good, "IMPORTED", what.clone());
-    let out = shell_quoted(&arguments.out.display().to_string());
-    screen.then(
-        format!("gyrocal diagnose {out} --bench BENCH.toml"),
-        "effects in the record",
+    let mut screen = Screen::new(Standing::Good, "MAP PROPOSED", what);
+    screen.fact(
+        "what to do",
+        "check units, signs and the order of axes in it",
     );
-    let mut answer = Reply::of(screen, format!("{what}\n"));
-    answer.write(Some(&arguments.out), "the record", |_| Ok(content))?;
+    let [log, map_words] = [log, map].map(|path| shell_quoted(&path.display().to_string()));
+    let command = format!("gyrocal diagnose {log} --columns {map_words} --bench BENCH.toml");
+    screen.then(command, "effects in the record");
+    let mut answer = Reply::of(screen, text.clone());
+    answer.write(Some(map), "the map", |_| Ok(text))?;
     Ok(answer)
 }
 
-fn read(arguments: &TableArguments) -> Result<(Record, usize), InstrumentError> {
-    let description = Description::read(&arguments.columns)?;
-    if let Some(interval_s) = arguments.average {
-        let averaged = average_file(&arguments.log, &description, interval_s)?;
-        return Ok((averaged.record, averaged.rows));
+fn import(arguments: &TableArguments, out: &Path) -> Result<Reply, Failure> {
+    let inputs = [Some(&*arguments.log), arguments.map.path()];
+    let inputs: Vec<&Path> = inputs.into_iter().flatten().collect();
+    let (parts, rows) = read(arguments)?;
+    let outputs = match &parts[..] {
+        [_] => vec![out.to_owned()],
+        parts => (1..=parts.len()).map(|part| numbered(out, part)).collect(),
+    };
+    for output in &outputs {
+        refuse_overlap(&inputs, &[("--out", Some(output))])?;
     }
-    let record = read_record(&arguments.log, &description)?.into_rising()?;
-    let rows = record.len();
-    Ok((record, rows))
+    let what = format!(
+        "{} rows over {:.1} s, from {rows} of {}",
+        parts.iter().map(Record::len).sum::<usize>(),
+        parts.iter().map(Record::duration_s).sum::<f64>(),
+        printable_path(&arguments.log)
+    );
+    let mut screen = Screen::new(Standing::Good, "IMPORTED", what.clone());
+    let names: Vec<String> = outputs
+        .iter()
+        .map(|out| shell_quoted(&out.display().to_string()))
+        .collect();
+    match &names[..] {
+        [out] => screen.then(
+            format!("gyrocal diagnose {out} --bench BENCH.toml"),
+            "effects in the record",
+        ),
+        names => {
+            screen.fact(
+                "parts",
+                format!(
+                    "{}: the clock goes back between them, so FREE.toml is BENCH.toml without initial angles",
+                    names.len()
+                ),
+            );
+            let benches =
+                " --bench BENCH.toml".to_owned() + &" --bench FREE.toml".repeat(names.len() - 1);
+            screen.then(
+                format!("gyrocal calibrate {}{benches}", names.join(" ")),
+                "all parts together",
+            );
+        }
+    }
+    let mut answer = Reply::of(screen, format!("{what}\n"));
+    for (record, out) in parts.iter().zip(&outputs) {
+        let text = record.to_csv(out)?;
+        let content = match out.extension().is_some_and(|it| it == "parquet") {
+            true => ResultTable::of_record(record).content(out)?,
+            false => text.into_bytes(),
+        };
+        answer.write(Some(out), "the record", |_| Ok(content))?;
+    }
+    Ok(answer)
+}
+
+/// `RECORD.csv` as `RECORD.2.csv`.
+fn numbered(path: &Path, part: usize) -> PathBuf {
+    let ending = path.extension().map(|it| it.to_string_lossy());
+    let ending = ending.map_or_else(|| part.to_string(), |it| format!("{part}.{it}"));
+    path.with_extension(ending)
+}
+
+/// The record, or its parts, and the number of rows that were read.
+fn read(arguments: &TableArguments) -> Result<(Vec<Record>, usize), Failure> {
+    if let Some(interval_s) = arguments.average {
+        let description = arguments
+            .map
+            .description()?
+            .map_or_else(Description::of_records, Ok)?;
+        let averaged = average_file(&arguments.log, &description, interval_s);
+        let AveragedRecordFile { record, rows } =
+            averaged.map_err(|error| unusable(&arguments.log, error))?;
+        return Ok((vec![record], rows));
+    }
+    let file = arguments.map.read(&arguments.log)?;
+    let rows = file.record().len();
+    let parts = restarts(&file.record().time_s).filter(|_| arguments.split);
+    let record = match parts {
+        Some(parts) => {
+            return Ok((
+                parts
+                    .into_iter()
+                    .map(|rows| file.record().part(rows))
+                    .collect(),
+                rows,
+            ));
+        }
+        None => RecordFile::into_rising(file)?,
+    };
+    Ok((vec![record], rows))
 }

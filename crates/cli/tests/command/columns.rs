@@ -99,9 +99,39 @@ fn a_pipe_is_read_once_and_whole() {
 fn a_record_without_its_map_is_refused_with_one() {
     let folder = folder();
     let errors = folder.fail(&["diagnose", "l.csv", "--bench", "b.toml"]);
-    for part in ["l.csv:1:5", "--columns", "column = \"Zeit\""] {
-        assert!(errors.contains(part), "{errors} lacks {part}");
+    let command = "gyrocal import csv l.csv --propose MAP.toml";
+    let told = errors
+        .split_whitespace()
+        .filter(|word| *word != "│")
+        .collect::<Vec<_>>()
+        .join(" ");
+    assert!(
+        told.contains(command) && told.contains("l.csv:1:5"),
+        "{errors}"
+    );
+    // Followed to the letter.
+    let words: Vec<&str> = command.split(' ').skip(1).collect();
+    let proposed = folder.succeed(&words);
+    assert!(
+        proposed.contains("MAP PROPOSED") && proposed.contains("4321 rows"),
+        "{proposed}"
+    );
+    for line in ["unit = \"mg\"", "unit = \"min\"", "decimal = \"comma\""] {
+        assert!(
+            folder.text("MAP.toml").contains(line),
+            "{}",
+            folder.text("MAP.toml")
+        );
     }
+    folder.succeed(&[
+        "calibrate",
+        "l.csv",
+        "--bench",
+        "b.toml",
+        "--columns",
+        "MAP.toml",
+        "--no-noise",
+    ]);
     folder.put("map.toml", MAP.replace("decimal = \"comma\"\n", ""));
     let arguments = [
         "diagnose",
@@ -138,6 +168,52 @@ fn an_imported_record_is_read_by_every_command() {
     folder.succeed(&["calibrate", "r.csv", "--bench", "b.toml", "--no-noise"]);
     let errors = folder.fail(&[&arguments[..], &["--average", "60"]].concat());
     assert!(errors.contains("calibrate --average"), "{errors}");
+}
+
+#[test]
+fn a_clock_that_begins_again_is_split_to_the_letter() {
+    let folder = Folder::new();
+    let text = example("three_days.csv");
+    let mut parts = text
+        .lines()
+        .take(1)
+        .map(str::to_owned)
+        .collect::<Vec<String>>();
+    for (row, line) in text.lines().skip(1).enumerate() {
+        let (time, rest) = line.split_once(',').unwrap();
+        let back_s = if row < 2000 { 0.0 } else { 120_000.0 };
+        parts.push(format!("{},{rest}", time.parse::<f64>().unwrap() - back_s));
+    }
+    folder.put("RECORD.csv", parts.join("\n") + "\n");
+    let bench = example("three_days.bench.toml");
+    folder.put("BENCH.toml", &bench);
+    folder.put("FREE.toml", &bench);
+    folder.forget_attitude("FREE.toml");
+    for command in ["diagnose", "calibrate"] {
+        let said = folder.run(&[command, "RECORD.csv", "--bench", "BENCH.toml"]);
+        let said = [said.stdout, said.stderr]
+            .map(|text| String::from_utf8(text).unwrap())
+            .concat();
+        let said = said.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(said.contains("RECORD.csv:2002"), "{said}");
+        assert!(
+            said.contains("gyrocal import csv RECORD.csv --split --out PART.csv"),
+            "{said}"
+        );
+    }
+    let answer = folder.succeed(&[
+        "import",
+        "csv",
+        "RECORD.csv",
+        "--split",
+        "--out",
+        "PART.csv",
+    ]);
+    let answer = answer.split_whitespace().collect::<Vec<_>>().join(" ");
+    let next = "calibrate PART.1.csv PART.2.csv --bench BENCH.toml --bench FREE.toml";
+    assert!(answer.contains(next), "{answer}");
+    folder.succeed(&next.split(' ').collect::<Vec<_>>());
+    assert_eq!(folder.text("PART.2.csv").lines().count(), 2322);
 }
 
 #[test]

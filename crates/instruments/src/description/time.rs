@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::date_time::DateTimes;
+
 /// Times of the samples: a column of time stamps, or a rate.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -9,8 +11,17 @@ use serde::{Deserialize, Serialize};
 pub struct Time {
     /// The column of time stamps.
     pub column: Option<String>,
-    /// Unit or notation of that column; seconds if neither it nor `unit_s` is given.
+    /// Columns in place of it whose texts, joined by blanks, are date and time: `["date", "time"]`.
+    pub columns: Option<Vec<String>>,
+    /// Unit or notation of that column; seconds if neither it nor `unit_s` nor `format` is given. Several columns
+    /// without a format are of RFC 3339.
     pub unit: Option<TimeUnit>,
+    /// Format of dates and times by `strftime`: `"%d.%m.%Y %H:%M:%S"`. `%.f` is a fraction of a second that may be
+    /// absent, `%j` the day of the year, `%z` an offset, `%p` AM or PM. Without a date midnight begins a new day.
+    pub format: Option<String>,
+    /// Zone of dates and times without an offset: its name, `"Europe/Berlin"`, or its offset, `"+01:00"`; UTC if it is
+    /// not given.
+    pub zone: Option<String>,
     /// Seconds in one unit of that column, for a unit without a name here.
     pub unit_s: Option<f64>,
     /// The column of GPS weeks, with the unit `"gps"`.
@@ -92,14 +103,30 @@ impl Time {
     /// Whether stamps are dates and times in words.
     #[must_use]
     pub fn is_text(&self) -> bool {
-        self.unit == Some(TimeUnit::Rfc3339)
+        self.format.is_some() || self.columns.is_some() || self.unit == Some(TimeUnit::Rfc3339)
+    }
+
+    /// The columns of time stamps.
+    pub(crate) fn stamps(&self) -> &[String] {
+        match &self.columns {
+            Some(columns) => columns,
+            None => self.column.as_slice(),
+        }
     }
 
     /// First mistake beyond types: its key, and the expected value.
     pub(super) fn mistake(&self) -> Option<(&'static str, &'static str)> {
         let positive = |value: f64| value.is_finite() && value > 0.0;
-        if self.column.is_some() == self.rate_hz.is_some() {
-            return Some(("[time]", "either `column` or `rate_hz`"));
+        let given = [
+            self.column.is_some(),
+            self.columns.is_some(),
+            self.rate_hz.is_some(),
+        ];
+        if given.into_iter().filter(|given| *given).count() != 1 {
+            return Some(("[time]", "one of `column`, `columns` and `rate_hz`"));
+        }
+        if self.columns.as_ref().is_some_and(Vec::is_empty) {
+            return Some(("columns", "at least one column of times"));
         }
         if !self.rate_hz.is_none_or(positive) {
             return Some(("rate_hz", "a positive number"));
@@ -109,6 +136,37 @@ impl Time {
         }
         if self.unit.is_some() && self.unit_s.is_some() {
             return Some(("unit_s", "either `unit` or `unit_s`"));
+        }
+        let other_unit =
+            self.unit.is_some_and(|unit| unit != TimeUnit::Rfc3339) || self.unit_s.is_some();
+        if self.is_text() && other_unit {
+            return Some((
+                "[time]",
+                "dates and times (`columns`, `format`) without a `unit` of numbers",
+            ));
+        }
+        if self.format.is_some() && self.unit.is_some() {
+            return Some(("format", "either `unit` or `format`"));
+        }
+        if self.zone.is_some() && !self.is_text() {
+            return Some((
+                "zone",
+                "dates and times (`format`, or the unit `rfc3339`) with it",
+            ));
+        }
+        if self.is_text() && DateTimes::of(self).is_none() {
+            let zone = Self {
+                format: None,
+                unit: Some(TimeUnit::Rfc3339),
+                ..self.clone()
+            };
+            return Some(match DateTimes::of(&zone) {
+                Some(_) => (
+                    "format",
+                    "a format of date and time by strftime, as `%d.%m.%Y %H:%M:%S`",
+                ),
+                None => ("zone", "a zone, as `Europe/Berlin` or `+01:00`"),
+            });
         }
         if self.week_column.is_some() && self.unit != Some(TimeUnit::Gps) {
             return Some(("week_column", "the unit `gps` with it"));

@@ -319,7 +319,7 @@ fn descriptions_are_refused_where_they_are_wrong() {
         (
             "unit_s = 1e-3",
             "rate_hz = 5",
-            "log.toml:2:1: found `[time]`, expected either",
+            "log.toml:2:1: found `[time]`, expected one of",
         ),
         (
             "unit_s = 1e-3",
