@@ -268,7 +268,7 @@ pub(crate) fn no_accelerometers() -> InstrumentError {
         "a description without `[accel]`",
         "the columns of three accelerometers, which tell attitude and rest",
         "add `[accel]` with `columns = [\"ax\", \"ay\", \"az\"]` and `unit = \"g\"` by the names and the unit of the \
-         log; gyros alone suffice for gyrocal allan",
+         log; gyros alone suffice for gyrocal allan and gyrocal rates",
     )
 }
 

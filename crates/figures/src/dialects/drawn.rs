@@ -2,7 +2,7 @@
 
 use gyrocal_statistics::deviates::Draw;
 
-use super::dialect::{Dialect, Encoding, PLAIN, Times};
+use super::dialect::{Dialect, Encoding, Times};
 use super::listed::{EXCEL_S, MATLAB_S};
 
 /// Forms of the times, each with titles that it may have.
@@ -125,14 +125,14 @@ pub(super) fn drawn(draw: &mut Draw) -> Dialect {
             Encoding::Utf16,
             Encoding::Latin1,
         ]),
-        line_end: draw.one_of(&["\n", "\r\n", "\n", "\r"]),
+        line_end: draw.one_of::<&str>(&["\n", "\r\n", "\n", "\r"]),
         times: *times,
         titles: has_header.then(|| (*draw.one_of(titles), *draw.one_of(&FORCES), celsius)),
         units: units.then_some(["", "", unit]),
         scale,
         zero,
         decimals,
-        preamble: draw.one_of(&["", "", "Logger 7, operator AB\n\n", "rig 4\nstart\n"]),
+        preamble: draw.one_of::<&str>(&["", "", "Logger 7, operator AB\n\n", "rig 4\nstart\n"]),
         comment,
         temperature: (has_header && draw.uniform() < 0.5).then_some(temperature),
         missing: *draw.one_of(&[None, None, Some("NA"), Some("")]),

@@ -29,13 +29,10 @@ const SHORTER_THAN_A_TURN: usize = 2;
 
 impl Log {
     /// The log with the medians in the place of the samples of gyros that no noise explains; [`Self::bad_samples`] has
-    /// them. Of a log that `turns` only one or two in a row are such: more may be a short turn.
+    /// them. Of a log that `turns` those at rest alone are looked at, and only one or two in a row are such: more may
+    /// be a short turn.
     #[must_use]
     pub fn without_bad_samples(mut self, turns: bool) -> Self {
-        let most = match turns {
-            true => SHORTER_THAN_A_TURN,
-            false => self.len(),
-        };
         let in_unit = |value: f64, in_counts: bool| match in_counts {
             true => value,
             false => deg_per_h(value),
@@ -46,7 +43,10 @@ impl Log {
                 .iter()
                 .map(|rate| in_unit(rate[gyro], self.gyro_in_counts));
             let values: Vec<f64> = values.collect();
-            let cleaned = WithoutBadSamples::in_rows_of_at_most(most, &values);
+            let cleaned = match turns {
+                true => WithoutBadSamples::in_stops(&values, SHORTER_THAN_A_TURN),
+                false => WithoutBadSamples::of(&values),
+            };
             if cleaned.places.is_empty() {
                 continue;
             }
