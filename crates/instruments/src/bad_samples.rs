@@ -1,6 +1,6 @@
 //! Samples that hold more than any noise would.
 
-use gyrocal_statistics::{robust_sigma, upper_median};
+use gyrocal_statistics::{median, robust_sigma, upper_median};
 use serde::Serialize;
 
 /// Samples of the running median that a sample is held against: it follows noise as slow as that of a gyro, and a step,
@@ -15,9 +15,13 @@ const FAR: f64 = 8.0;
 /// samples at the height of a bump deviate by one to two of these.
 const BESIDE: f64 = 4.0;
 
-/// Robust standard deviation of the samples about one, over that of the log, up to which an instrument that turns between
-/// stops is at rest there: of ten samples of white noise it is more in 4 of 100 000.
-const AT_REST: f64 = 3.0;
+/// Running median of a rate from that of the whole log, in robust standard deviations of all medians, up to which an
+/// instrument that stands in stops for most of a log is at rest.
+const AT_REST: f64 = 5.0;
+
+/// Robust standard deviation of the samples about one, over that of the log, up to which no turn begins there: of ten
+/// samples of white noise it is more in 4 of 100 000.
+const QUIET: f64 = 3.0;
 
 /// Share of the samples above which wild values are the noise of this sensor.
 const LARGEST_SHARE: f64 = 0.01;
@@ -46,15 +50,16 @@ pub(crate) struct WithoutBadSamples {
 
 impl WithoutBadSamples {
     pub(crate) fn of(values: &[f64]) -> Self {
-        Self::among(values, values.len(), f64::INFINITY)
+        Self::among(values, values.len(), None)
     }
 
-    /// The same of an instrument that turns: at rest, and no more than so many in a row, which may be a short turn.
-    pub(crate) fn in_stops(values: &[f64], most_in_a_row: usize) -> Self {
-        Self::among(values, most_in_a_row, AT_REST)
+    /// The same of an instrument that turns between stops: of those `at_rest`, and no more than so many in a row, which may
+    /// be a short turn.
+    pub(crate) fn in_stops(values: &[f64], at_rest: &[bool], most_in_a_row: usize) -> Self {
+        Self::among(values, most_in_a_row, Some(at_rest))
     }
 
-    fn among(values: &[f64], most: usize, at_rest: f64) -> Self {
+    fn among(values: &[f64], most: usize, at_rest: Option<&[bool]>) -> Self {
         let medians = running_median(values);
         let off = |place: usize| (values[place] - medians[place]).abs();
         let mut sizes: Vec<f64> = (0..values.len()).map(off).collect();
@@ -65,12 +70,14 @@ impl WithoutBadSamples {
                 return false;
             }
             let about = scale_about(values, *place, medians[*place]);
-            far > BESIDE * about && about <= at_rest * limit / FAR
+            let is_quiet = about <= QUIET * limit / FAR;
+            far > BESIDE * about && (at_rest.is_none() || is_quiet)
         };
         let found: Vec<usize> = (0..values.len()).filter(stands_out).collect();
         let rows = found.chunk_by(|one, next| one + 1 == *next);
         let mut places: Vec<usize> = rows
             .filter(|row| row.len() <= most)
+            .filter(|row| at_rest.is_none_or(|at_rest| row.iter().all(|place| at_rest[*place])))
             .flatten()
             .copied()
             .collect();
@@ -101,6 +108,15 @@ impl WithoutBadSamples {
     }
 }
 
+/// Where a rate is near that of most of its log.
+pub(crate) fn at_rest(values: &[f64]) -> Vec<bool> {
+    let medians = running_median(values);
+    let rest = median(&medians);
+    let off = medians.iter().map(|own| (own - rest).abs());
+    let limit = AT_REST * robust_sigma(&mut off.clone().collect::<Vec<f64>>());
+    off.map(|off| off <= limit).collect()
+}
+
 /// Robust standard deviation about `median` of the samples about one.
 fn scale_about(values: &[f64], place: usize, median: f64) -> f64 {
     let about = place.saturating_sub(WINDOW / 2)..values.len().min(place + WINDOW / 2 + 1);
@@ -116,13 +132,13 @@ fn scale_about(values: &[f64], place: usize, median: f64) -> f64 {
 fn running_median(values: &[f64]) -> Vec<f64> {
     let half = WINDOW / 2;
     let mut window = Vec::with_capacity(WINDOW);
-    let mut median = |place: usize| {
+    let mut of_place = |place: usize| {
         window.clear();
         let to = values.len().min(place + half + 1);
         window.extend_from_slice(&values[place.saturating_sub(half)..to]);
         upper_median(&mut window).unwrap_or(values[place])
     };
-    (0..values.len()).map(&mut median).collect()
+    (0..values.len()).map(&mut of_place).collect()
 }
 
 #[cfg(test)]
@@ -175,7 +191,8 @@ mod tests {
                 }
             }
             let mut wild = values.clone();
-            let bad = |values: &[f64]| WithoutBadSamples::in_stops(values, 2).places;
+            let bad =
+                |values: &[f64]| WithoutBadSamples::in_stops(values, &at_rest(values), 2).places;
             assert!(bad(&values).is_empty(), "{samples}");
             // What a turn holds is no noise.
             wild[60] += 1e3;

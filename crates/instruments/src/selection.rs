@@ -153,7 +153,9 @@ impl Selection {
         error: Error,
     ) -> Error {
         let follows = line.span.start > self.header.end + 1 && self.title.is_some();
-        if !follows || !line.is_of_words(format.decimal) {
+        // One word is a value that is none, of a file of one column.
+        let is_one = self.fields < 2;
+        if !follows || is_one || !line.is_of_words(format.decimal) {
             return error;
         }
         let (first, _) = source.line_and_column(self.header.start);

@@ -47,10 +47,10 @@ fn bad_input_is_told() {
     let errors = folder.fail(&["allan", "l.csv", "--columns", "rates", "--rate-hz", "10"]);
     assert!(errors.contains("expected a column `rates`"), "{errors}");
     assert!(errors.contains("the columns are rate, other"), "{errors}");
-    folder.put("n.csv", "rate\n1\nx\n");
+    folder.put("n.csv", "rate\n1\n2\nx\n");
     let errors = folder.fail(&["allan", "n.csv", "--columns", "rate", "--rate-hz", "10"]);
     assert!(
-        errors.contains("n.csv:3:1: found `x`, expected a finite number"),
+        errors.contains("n.csv:4:1: found `x`, expected a finite number"),
         "{errors}"
     );
     // The other column of the log holds ones.

@@ -4,7 +4,7 @@ use gyrocal::generated::catalogue::RATES;
 use serde::Serialize;
 
 use super::Log;
-use crate::bad_samples::{BadSample, WithoutBadSamples};
+use crate::bad_samples::{BadSample, WithoutBadSamples, at_rest};
 use crate::earth_rate::deg_per_h;
 
 /// Samples of one gyro of a log that no noise explains: more than eight robust standard deviations from the median of
@@ -33,24 +33,30 @@ impl Log {
     /// be a short turn.
     #[must_use]
     pub fn without_bad_samples(mut self, turns: bool) -> Self {
-        let in_unit = |value: f64, in_counts: bool| match in_counts {
-            true => value,
-            false => deg_per_h(value),
+        let in_counts = self.gyro_in_counts;
+        let in_unit = |value: f64| if in_counts { value } else { deg_per_h(value) };
+        let values = |log: &Self, gyro: usize| -> Vec<f64> {
+            log.gyro.iter().map(|rate| in_unit(rate[gyro])).collect()
+        };
+        // One that turns about an axis is at rest about none.
+        let at_rest = match turns {
+            true => {
+                let each = [0, 1, 2].map(|gyro| at_rest(&values(&self, gyro)));
+                let all = (0..self.len()).map(|place| each.iter().all(|own| own[place]));
+                all.collect()
+            }
+            false => Vec::new(),
         };
         for (gyro, rate) in RATES.iter().enumerate().take(3) {
-            let values = self
-                .gyro
-                .iter()
-                .map(|rate| in_unit(rate[gyro], self.gyro_in_counts));
-            let values: Vec<f64> = values.collect();
+            let values = values(&self, gyro);
             let cleaned = match turns {
-                true => WithoutBadSamples::in_stops(&values, SHORTER_THAN_A_TURN),
+                true => WithoutBadSamples::in_stops(&values, &at_rest, SHORTER_THAN_A_TURN),
                 false => WithoutBadSamples::of(&values),
             };
             if cleaned.places.is_empty() {
                 continue;
             }
-            let per_unit = in_unit(1.0, self.gyro_in_counts);
+            let per_unit = in_unit(1.0);
             for place in &cleaned.places {
                 self.gyro[*place][gyro] = cleaned.values[*place] / per_unit;
             }
@@ -59,7 +65,7 @@ impl Log {
                 gyro: rate.id.to_owned(),
                 count: cleaned.places.len(),
                 samples: cleaned.told(&values, self.interval_s),
-                unit: match self.gyro_in_counts {
+                unit: match in_counts {
                     true => "counts".to_owned(),
                     false => "deg/h".to_owned(),
                 },

@@ -68,9 +68,7 @@ pub(super) fn gps(table: &Table<'_>) -> Option<Stamps> {
 pub(super) fn numbers(table: &Table<'_>) -> Option<Stamps> {
     let rising = (0..table.names.len()).filter(|column| {
         let values = table.numbers(*column);
-        values.iter().all(|value| value.is_finite())
-            && rises(&values)
-            && values.last() > values.first()
+        values.iter().all(|value| value.is_finite()) && rises(&values)
     });
     let has = |column: usize, names: &[&str]| {
         let words = words(&table.titles[column]);

@@ -256,5 +256,7 @@ pub(super) fn rises(times: &[f64]) -> bool {
         .count() as f64;
     let equal = times.windows(2).filter(|pair| pair[1] == pair[0]).count() as f64;
     // A restart of a short record.
-    falling <= (MOST_FALLING * pairs).max(1.0) && equal <= 0.9 * pairs && times.len() > 1
+    falling <= (MOST_FALLING * pairs).max(1.0)
+        && equal <= 0.9 * pairs
+        && pairs - falling - equal > falling
 }

@@ -327,6 +327,21 @@ fn a_proposed_map_reads_its_file() {
 }
 
 #[test]
+fn a_map_is_proposed_of_a_clock_that_begins_anew_below_its_first_time() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("restart.csv");
+    let mut text = "t,ax,ay,az\n".to_owned();
+    for row in 0..120 {
+        let time_s = if row < 70 { 86_340.0 } else { -4_193.0 } + 60.0 * f64::from(row);
+        let (sine, cosine) = (7.292e-5 * 60.0 * f64::from(row)).sin_cos();
+        text += &format!("{time_s},{:.9},{:.9},0.6\n", 0.8 * cosine, 0.8 * sine);
+    }
+    std::fs::write(&path, &text).unwrap();
+    let map = propose_map(&path).unwrap();
+    assert!(map.contains("column = \"t\"\nunit = \"s\""), "{map}");
+}
+
+#[test]
 fn a_description_without_gyros_is_none_of_an_instrument_test() {
     let description = Description::parse(MAP, "map.toml").unwrap();
     let refused = gyrocal_instruments::Log::parse("t,a,b,c,T\n", "log.csv", &description);
