@@ -15,14 +15,6 @@ const FAR: f64 = 8.0;
 /// samples at the height of a bump deviate by one to two of these.
 const BESIDE: f64 = 4.0;
 
-/// Running median of a rate from that of the whole log, in robust standard deviations of all medians, up to which an
-/// instrument that stands in stops for most of a log is at rest.
-const AT_REST: f64 = 5.0;
-
-/// Robust standard deviation of the samples about one, over that of the log, up to which no turn begins there: of ten
-/// samples of white noise it is more in 4 of 100 000.
-const QUIET: f64 = 3.0;
-
 /// Share of the samples above which wild values are the noise of this sensor.
 const LARGEST_SHARE: f64 = 0.01;
 
@@ -50,39 +42,42 @@ pub(crate) struct WithoutBadSamples {
 
 impl WithoutBadSamples {
     pub(crate) fn of(values: &[f64]) -> Self {
-        Self::among(values, values.len(), None)
+        Self::among(values, values.len(), false)
     }
 
-    /// The same of an instrument that turns between stops: of those `at_rest`, and no more than so many in a row, which may
-    /// be a short turn.
-    pub(crate) fn in_stops(values: &[f64], at_rest: &[bool], most_in_a_row: usize) -> Self {
-        Self::among(values, most_in_a_row, Some(at_rest))
+    /// The same of an instrument that turns between stops: those that are farther off than it ever turns, and no more than
+    /// so many in a row, which may be a short turn. A turn that shakes has lesser ones.
+    pub(crate) fn beyond_turns(values: &[f64], most_in_a_row: usize) -> Self {
+        Self::among(values, most_in_a_row, true)
     }
 
-    fn among(values: &[f64], most: usize, at_rest: Option<&[bool]>) -> Self {
+    fn among(values: &[f64], most: usize, turns: bool) -> Self {
         let medians = running_median(values);
         let off = |place: usize| (values[place] - medians[place]).abs();
         let mut sizes: Vec<f64> = (0..values.len()).map(off).collect();
         let limit = FAR * robust_sigma(&mut sizes);
-        let stands_out = |place: &usize| {
-            let far = off(*place);
-            if far <= limit {
-                return false;
-            }
-            let about = scale_about(values, *place, medians[*place]);
-            let is_quiet = about <= QUIET * limit / FAR;
-            far > BESIDE * about && (at_rest.is_none() || is_quiet)
+        let rest = if turns { median(&medians) } else { 0.0 };
+        let of_turns = medians.iter().map(|own| (own - rest).abs());
+        let fastest = if turns {
+            of_turns.fold(0.0, f64::max)
+        } else {
+            0.0
         };
-        let found: Vec<usize> = (0..values.len()).filter(stands_out).collect();
+        let mut found: Vec<usize> = (0..values.len())
+            .filter(|place| off(*place) > limit.max(fastest))
+            .collect();
+        let far = found.len();
+        found.retain(|place| off(*place) > BESIDE * scale_about(values, *place, medians[*place]));
         let rows = found.chunk_by(|one, next| one + 1 == *next);
         let mut places: Vec<usize> = rows
             .filter(|row| row.len() <= most)
-            .filter(|row| at_rest.is_none_or(|at_rest| row.iter().all(|place| at_rest[*place])))
             .flatten()
             .copied()
             .collect();
+        // Short turns are far off and no noise.
+        let wild = if turns { places.len() } else { far };
         // A sensor whose values hardly ever change has no scale that could tell.
-        if limit == 0.0 || places.len() as f64 > (LARGEST_SHARE * values.len() as f64).max(1.0) {
+        if limit == 0.0 || wild as f64 > (LARGEST_SHARE * values.len() as f64).max(1.0) {
             places.clear();
         }
         let mut cleaned = values.to_vec();
@@ -106,15 +101,6 @@ impl WithoutBadSamples {
             })
             .collect()
     }
-}
-
-/// Where a rate is near that of most of its log.
-pub(crate) fn at_rest(values: &[f64]) -> Vec<bool> {
-    let medians = running_median(values);
-    let rest = median(&medians);
-    let off = medians.iter().map(|own| (own - rest).abs());
-    let limit = AT_REST * robust_sigma(&mut off.clone().collect::<Vec<f64>>());
-    off.map(|off| off <= limit).collect()
 }
 
 /// Robust standard deviation about `median` of the samples about one.
@@ -191,13 +177,14 @@ mod tests {
                 }
             }
             let mut wild = values.clone();
-            let bad =
-                |values: &[f64]| WithoutBadSamples::in_stops(values, &at_rest(values), 2).places;
+            let bad = |values: &[f64]| WithoutBadSamples::beyond_turns(values, 2).places;
             assert!(bad(&values).is_empty(), "{samples}");
-            // What a turn holds is no noise.
-            wild[60] += 1e3;
-            wild[700 + samples / 2] += 1e6;
-            assert_eq!(bad(&wild), [60], "{samples}");
+            // At rest, and at the height of a turn: of one that the median does not follow it is told where it is long.
+            let both = [60, 700 + samples / 2];
+            both.iter().for_each(|place| wild[*place] += 1e6);
+            let found = bad(&wild);
+            assert_eq!(found[0], 60, "{samples}");
+            assert!(found.iter().all(|place| both.contains(place)), "{samples}");
         }
     }
 

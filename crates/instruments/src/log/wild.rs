@@ -4,7 +4,7 @@ use gyrocal::generated::catalogue::RATES;
 use serde::Serialize;
 
 use super::Log;
-use crate::bad_samples::{BadSample, WithoutBadSamples, at_rest};
+use crate::bad_samples::{BadSample, WithoutBadSamples};
 use crate::earth_rate::deg_per_h;
 
 /// Samples of one gyro of a log that no noise explains: more than eight robust standard deviations from the median of
@@ -29,8 +29,8 @@ const SHORTER_THAN_A_TURN: usize = 2;
 
 impl Log {
     /// The log with the medians in the place of the samples of gyros that no noise explains; [`Self::bad_samples`] has
-    /// them. Of a log that `turns` those at rest alone are looked at, and only one or two in a row are such: more may
-    /// be a short turn.
+    /// them. Of a log that `turns` such are farther off than it ever turns, and only one or two in a row: more may be
+    /// a short turn.
     #[must_use]
     pub fn without_bad_samples(mut self, turns: bool) -> Self {
         let in_counts = self.gyro_in_counts;
@@ -38,19 +38,10 @@ impl Log {
         let values = |log: &Self, gyro: usize| -> Vec<f64> {
             log.gyro.iter().map(|rate| in_unit(rate[gyro])).collect()
         };
-        // One that turns about an axis is at rest about none.
-        let at_rest = match turns {
-            true => {
-                let each = [0, 1, 2].map(|gyro| at_rest(&values(&self, gyro)));
-                let all = (0..self.len()).map(|place| each.iter().all(|own| own[place]));
-                all.collect()
-            }
-            false => Vec::new(),
-        };
         for (gyro, rate) in RATES.iter().enumerate().take(3) {
             let values = values(&self, gyro);
             let cleaned = match turns {
-                true => WithoutBadSamples::in_stops(&values, &at_rest, SHORTER_THAN_A_TURN),
+                true => WithoutBadSamples::beyond_turns(&values, SHORTER_THAN_A_TURN),
                 false => WithoutBadSamples::of(&values),
             };
             if cleaned.places.is_empty() {
