@@ -168,7 +168,11 @@ fn tests_of_instruments_fit() {
     ];
     assert_screen(&folder, &tumble, &verdict);
     let allan = ["allan", "r.csv", "--log-description", "r.toml"];
-    assert_screen(&folder, &allan, &["NOISE", "in 2 of 3 columns"]);
+    assert_screen(
+        &folder,
+        &allan,
+        &["NOISE NOT EXPLAINED", "in 3 of 3 columns"],
+    );
     let import = [
         "import",
         "strapdown",
