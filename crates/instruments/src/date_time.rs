@@ -5,8 +5,6 @@ use jiff::fmt::strtime::BrokenDownTime;
 use jiff::fmt::temporal::{DateTimeParser, Pieces};
 use jiff::tz::{Offset, TimeZone};
 
-use crate::description::Time;
-
 /// Seconds of a day.
 const DAY_S: f64 = 86_400.0;
 
@@ -27,17 +25,17 @@ pub(crate) struct DateTimes {
 }
 
 impl DateTimes {
-    /// The reader of a description; `None` if its stamps are numbers, or if format or zone are none.
-    pub(crate) fn of(time: &Time) -> Option<Self> {
-        let zone = match &time.zone {
+    /// The reader of a format, RFC 3339 without one, in a zone, UTC without one; `None` if either is none.
+    pub(crate) fn of(format: Option<&str>, zone: Option<&str>) -> Option<Self> {
+        let zone = match zone {
             Some(zone) => DateTimeParser::new().parse_time_zone(zone).ok()?,
             None => TimeZone::UTC,
         };
-        let reader = match &time.format {
+        let reader = match format {
             Some(format) => Self::of_format(format)?,
             None => Self::rfc3339(),
         };
-        time.is_text().then_some(Self { zone, ..reader })
+        Some(Self { zone, ..reader })
     }
 
     /// Reader of RFC 3339.

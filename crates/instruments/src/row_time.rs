@@ -22,7 +22,7 @@ impl<'a> RowTime<'a> {
         Self {
             time: &description.time,
             format: &description.file,
-            dates: DateTimes::of(&description.time),
+            dates: description.time.dates(),
         }
     }
 

@@ -106,6 +106,12 @@ impl Time {
         self.format.is_some() || self.columns.is_some() || self.unit == Some(TimeUnit::Rfc3339)
     }
 
+    /// The reader of its dates and times; `None` of numbers, or if format or zone are none.
+    pub(crate) fn dates(&self) -> Option<DateTimes> {
+        let reader = DateTimes::of(self.format.as_deref(), self.zone.as_deref());
+        reader.filter(|_| self.is_text())
+    }
+
     /// The columns of time stamps.
     pub(crate) fn stamps(&self) -> &[String] {
         match &self.columns {
@@ -154,13 +160,13 @@ impl Time {
                 "dates and times (`format`, or the unit `rfc3339`) with it",
             ));
         }
-        if self.is_text() && DateTimes::of(self).is_none() {
+        if self.is_text() && self.dates().is_none() {
             let zone = Self {
                 format: None,
                 unit: Some(TimeUnit::Rfc3339),
                 ..self.clone()
             };
-            return Some(match DateTimes::of(&zone) {
+            return Some(match zone.dates() {
                 Some(_) => (
                     "format",
                     "a format of date and time by strftime, as `%d.%m.%Y %H:%M:%S`",
