@@ -189,10 +189,7 @@ mod tests {
 
     #[test]
     fn the_hour_after_summer_time_is_not_the_hour_before() {
-        let time = |zone: &str| {
-            let text = format!("column = \"t\"\nformat = \"%F %T\"\nzone = \"{zone}\"\n");
-            DateTimes::of(&toml::from_str(&text).unwrap())
-        };
+        let time = |zone: &str| DateTimes::of(Some("%F %T"), Some(zone));
         let mut berlin = time("Europe/Berlin").unwrap();
         let times = [
             "01:59:00", "02:30:00", "02:59:00", "02:00:00", "02:59:00", "03:00:00",
