@@ -10,7 +10,9 @@
 use std::sync::Arc;
 
 use gyrocal_answer::{PathStep, Refusal};
-use gyrocal_hypothesis::{SearchOptions, Searched, Selection, search, search_from};
+use gyrocal_hypothesis::{
+    FittedModel as _, SearchOptions, Searched, Selection, search, search_from,
+};
 
 use crate::error::PlantError;
 use crate::fitted::FittedPlant;
@@ -150,7 +152,13 @@ pub(crate) fn searched(
     if !has_found && is_white(&first)? {
         return Ok(first.into());
     }
-    let Some(second) = in_all_noise(&first, selection, options)? else {
+    let Some(noisy) = in_all_noise(&first.nominal)? else {
+        return Ok(first.into());
+    };
+    if is_one_beside_white(&first, &noisy)? {
+        return Ok(first.into());
+    }
+    let Some(second) = searched_again(noisy, &first, selection, options)? else {
         return Ok(first.into());
     };
     let names = |of: &Searched<FittedPlant>| {
@@ -179,21 +187,45 @@ pub(crate) fn searched(
     })
 }
 
-/// The search in all noise; `None` where the nominal model needs no more than white noise, or has no fit with it.
-fn in_all_noise(
+/// Whether the first search has one term, which leaves white noise and explains more than all noise without it does: a
+/// second search could name nothing with a larger likelihood less its penalties.
+fn is_one_beside_white(
+    first: &Searched<FittedPlant>,
+    noisy: &FittedPlant,
+) -> Result<bool, PlantError> {
+    if first.findings.len() + first.unmodelled.len() != 1 || in_all_noise(&first.fitted)?.is_some()
+    {
+        return Ok(false);
+    }
+    Ok(penalised(first) > noisy.fit_rate_noise(&[], &[])?.log_likelihood)
+}
+
+/// A model in all noise; `None` where it needs no more than white noise, or has no fit with it.
+fn in_all_noise(fitted: &FittedPlant) -> Result<Option<FittedPlant>, PlantError> {
+    or_none(fitted.in_all_noise()).map(Option::flatten)
+}
+
+/// The search in all noise, from the nominal model in it; `None` where it has no fit.
+fn searched_again(
+    noisy: FittedPlant,
     first: &Searched<FittedPlant>,
     selection: &Selection,
     options: &SearchOptions,
 ) -> Result<Option<Searched<FittedPlant>>, PlantError> {
-    let nominal = match first.nominal.in_all_noise() {
-        Ok(Some(nominal)) => nominal,
-        Ok(None) | Err(PlantError::NoFit { .. } | PlantError::Singular) => return Ok(None),
-        Err(PlantError::NotFinite { .. }) => return Ok(None),
-        Err(other) => return Err(other),
-    };
-    let rows = nominal.rows();
-    match search_from(nominal, rows, selection, options, first.proposals()) {
-        Ok(second) => Ok(Some(second)),
+    let rows = noisy.rows();
+    or_none(search_from(
+        noisy,
+        rows,
+        selection,
+        options,
+        first.proposals(),
+    ))
+}
+
+/// `None` in the place of a model that cannot be fitted.
+fn or_none<T>(result: Result<T, PlantError>) -> Result<Option<T>, PlantError> {
+    match result {
+        Ok(found) => Ok(Some(found)),
         Err(PlantError::NoFit { .. } | PlantError::Singular | PlantError::NotFinite { .. }) => {
             Ok(None)
         }

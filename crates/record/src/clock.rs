@@ -8,6 +8,10 @@ use crate::record::Record;
 /// Most leaps back of a clock that began again: more are rows out of order.
 const MOST_RESTARTS: usize = 20;
 
+/// Stands for the file in the advice on a record that has none; [`RecordFile::locate`](crate::RecordFile::locate) puts
+/// its name there.
+pub const UNNAMED: &str = "RECORD.csv";
+
 /// What is wrong with times that do not rise, and the remedy; both are beginnings of sentences without a full stop.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ClockFault {
@@ -20,9 +24,9 @@ pub struct ClockFault {
 }
 
 impl ClockFault {
-    /// The fault of some times \[s\]; `None` if they rise.
+    /// The fault of some times \[s\], with what to do to a file of this name; `None` if they rise.
     #[must_use]
-    pub fn of(time_s: &[f64]) -> Option<Self> {
+    pub fn of(time_s: &[f64], file: &str) -> Option<Self> {
         let falls = |at: &usize| {
             // Not a number does not rise.
             let rises = time_s[*at] > time_s[*at - 1];
@@ -35,13 +39,14 @@ impl ClockFault {
         let (found, advice) = match (restarts(time_s), back.count()) {
             (Some(parts), _) => (
                 format!(
-                    "a clock that goes back from {before_s} s to {here_s} s, with {} parts that rise each",
+                    "a clock that goes back from {before_s} s to {here_s} s: {} parts whose times rise",
                     parts.len()
                 ),
-                "split the record in front of this line: `gyrocal import csv RECORD.csv --split --out PART.csv` writes \
-                 each part as a record, PART.1.csv and so on (with `--columns MAP.toml` if it has a map); the bench \
-                 description of each part after the first has no initial angles"
-                    .to_owned(),
+                format!(
+                    "`gyrocal import csv {file} --split --out PART.csv` writes each part as a record, PART.1.csv and \
+                     so on (with `--columns` and the map, if one reads it); the bench description of each part after \
+                     the first has no initial angles"
+                ),
             ),
             (None, 0) => (
                 format!(
@@ -127,7 +132,8 @@ mod tests {
 
     #[test]
     fn a_clock_that_begins_again_is_no_disorder() {
-        let of = |times: &[f64]| ClockFault::of(times).map(|fault| (fault.row, fault.found));
+        let of =
+            |times: &[f64]| ClockFault::of(times, "r.csv").map(|fault| (fault.row, fault.found));
         assert_eq!(of(&[0.0, 1.0, 2.0]), None);
         let (row, found) = of(&[5.0, 6.0, 7.0, 0.0, 1.0]).unwrap();
         assert_eq!(row, 3);
@@ -144,7 +150,7 @@ mod tests {
             found.starts_with("1 row with the time of the row before"),
             "{found}"
         );
-        assert!(ClockFault::of(&[0.0, f64::NAN]).is_some());
+        assert!(ClockFault::of(&[0.0, f64::NAN], "r.csv").is_some());
     }
 
     #[test]

@@ -89,7 +89,7 @@ mod white_noise;
 
 pub use bench::{Bench, Prior};
 pub use bound::Bound;
-pub use clock::{ClockFault, restarts};
+pub use clock::{ClockFault, UNNAMED, restarts};
 pub use content::{is_encoding, keep_streams, open_content, open_text, read_content};
 pub use document::Document;
 pub use error::{Error, InputError, InputErrorKind};

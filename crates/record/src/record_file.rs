@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::path::Path;
 
-use crate::clock::{ClockFault, leave_out_repeated};
+use crate::clock::{ClockFault, UNNAMED, leave_out_repeated};
 use crate::error::{Error, InputErrorKind};
 use crate::plausible::{Codes, check_intervals, check_norms, check_stuck, counted, refuse_too_few};
 use crate::printable::printable_line;
@@ -157,6 +157,7 @@ impl RecordFile {
     pub fn locate(&self, problems: &mut [SetupProblem]) {
         for problem in problems.iter_mut().filter(|problem| problem.file.is_none()) {
             problem.file = Some(self.name().to_owned());
+            problem.description = problem.description.replace(UNNAMED, self.name());
             problem.lines = problem.rows.and_then(|[first, last]| {
                 let line = |row: usize| self.line(row.checked_sub(1)?);
                 Some([line(first)?, line(last)?])
@@ -170,7 +171,7 @@ impl RecordFile {
     ///
     /// [`Error::Input`] at the first row that does not.
     pub fn into_rising(self) -> Result<Record, Error> {
-        let Some(fault) = ClockFault::of(&self.record.time_s) else {
+        let Some(fault) = ClockFault::of(&self.record.time_s, self.name()) else {
             return Ok(self.record);
         };
         let place = self.places.get(fault.row).cloned().unwrap_or(0..0);

@@ -161,7 +161,7 @@ fn check_times(record: &Record, source: &SourceText, places: &[Range<usize>]) ->
         let place = places.get(row).cloned().unwrap_or(0..0);
         Err(source.error(InputErrorKind::Time, place, found, expected, advice))
     };
-    if let Some(fault) = ClockFault::of(&record.time_s) {
+    if let Some(fault) = ClockFault::of(&record.time_s, source.name()) {
         return error(fault.row, fault.found, "times that rise", &fault.advice);
     }
     let first_s = record.time_s.first().copied().unwrap_or(0.0);

@@ -1,6 +1,6 @@
 //! Order of the times.
 
-use gyrocal_record::{ClockFault, Record};
+use gyrocal_record::{ClockFault, Record, UNNAMED};
 
 use crate::finding::SetupFinding;
 use crate::kind::SetupKind;
@@ -39,7 +39,7 @@ pub(crate) fn find(record: &Record) -> Vec<SetupFinding> {
         wrong.insert(0, 0);
     }
     if let (Some(first), Some(last)) = (wrong.first(), wrong.last()) {
-        let fault = ClockFault::of(&record.time_s);
+        let fault = ClockFault::of(&record.time_s, UNNAMED);
         let (found, advice) = fault.map_or_else(
             || {
                 (

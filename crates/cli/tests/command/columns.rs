@@ -184,27 +184,27 @@ fn a_clock_that_begins_again_is_split_to_the_letter() {
         let back_s = if row < 2000 { 0.0 } else { 120_000.0 };
         parts.push(format!("{},{rest}", time.parse::<f64>().unwrap() - back_s));
     }
-    folder.put("RECORD.csv", parts.join("\n") + "\n");
+    folder.put("logged.csv", parts.join("\n") + "\n");
     let bench = example("three_days.bench.toml");
     folder.put("BENCH.toml", &bench);
     folder.put("FREE.toml", &bench);
     folder.forget_attitude("FREE.toml");
     for command in ["diagnose", "calibrate"] {
-        let said = folder.run(&[command, "RECORD.csv", "--bench", "BENCH.toml"]);
+        let said = folder.run(&[command, "logged.csv", "--bench", "BENCH.toml"]);
         let said = [said.stdout, said.stderr]
             .map(|text| String::from_utf8(text).unwrap())
             .concat();
         let said = said.split_whitespace().collect::<Vec<_>>().join(" ");
-        assert!(said.contains("RECORD.csv:2002"), "{said}");
+        assert!(said.contains("logged.csv:2002"), "{said}");
         assert!(
-            said.contains("gyrocal import csv RECORD.csv --split --out PART.csv"),
+            said.contains("gyrocal import csv logged.csv --split --out PART.csv"),
             "{said}"
         );
     }
     let answer = folder.succeed(&[
         "import",
         "csv",
-        "RECORD.csv",
+        "logged.csv",
         "--split",
         "--out",
         "PART.csv",

@@ -31,6 +31,10 @@ const FEWEST_BINS: usize = 20;
 /// Factor of the density that a sinusoid is held against beyond the corner of a filter, where the density has no law.
 const BEYOND: f64 = 10.0;
 
+/// Power beyond the corner over that of the law without a filter, above which there is none: one pole leaves half or less
+/// there.
+const HIDDEN: f64 = 0.75;
+
 /// Averaging time at which a frequency of one counts most in an Allan variance: the maximum of sin⁴(π x) / x².
 const OF_FREQUENCY: f64 = 0.371;
 
@@ -68,7 +72,7 @@ pub struct NoiseFit {
     /// Sinusoids, the largest first.
     pub tones: Vec<Tone>,
     /// Frequency at which a filter leaves half of the power \[Hz\], at most half the sampling rate; `None` without a
-    /// filter. Behind one quantisation cannot be told, and what is above the frequency is not part of the test.
+    /// filter, and where the noise is not explained. Behind one quantisation cannot be told, and what is above the frequency is not part of the test.
     pub filter_corner_hz: Option<f64>,
     /// Samples for each value of a sensor that has fewer than the log; `None` without repetitions.
     pub samples_per_value: Option<f64>,
@@ -199,7 +203,7 @@ impl Fitted {
             found += bin.count * bin.power / open_density(&law, bin.frequency);
             open += bin.count;
         }
-        let is_low = found <= 0.75 * open;
+        let is_low = found <= HIDDEN * open;
         is_low.then(|| Self {
             bins: bins.to_vec(),
             used,
@@ -296,7 +300,9 @@ impl Found {
         NoiseFit {
             coefficients: NoisePart::ALL.into_iter().map(coefficient).collect(),
             tones: self.lines.iter().map(tone).collect(),
-            filter_corner_hz: corner.map(|corner| corner / units.interval_s),
+            filter_corner_hz: corner
+                .filter(|_| is_described)
+                .map(|corner| corner / units.interval_s),
             samples_per_value: None,
             chi_square,
             p_value,
