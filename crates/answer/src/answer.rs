@@ -240,6 +240,20 @@ pub enum Verdict {
     Setup,
 }
 
+impl Verdict {
+    /// Its word in the JSON.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Clean => "clean",
+            Self::EffectsFound => "effects-found",
+            Self::Unexplained => "unexplained",
+            Self::NotSettled => "not-settled",
+            Self::Setup => "setup",
+        }
+    }
+}
+
 /// Probabilities of a false alarm that the tests of one diagnosis may spend.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]

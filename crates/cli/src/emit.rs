@@ -3,12 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
+use gyrocal_diagnosis::known_effects;
 use gyrocal_document::{Screen, Standing};
 use gyrocal_emit::{Emission, Extension, Number};
-use gyrocal_record::{ModelFile, module_name, printable_path};
-use miette::{IntoDiagnostic as _, Report, WrapErr as _};
+use gyrocal_record::{ModelFile, SourceText, module_name, printable_path};
+use miette::Report;
 
-use crate::extend::known;
 use crate::outputs::refuse_overlap;
 use crate::{Failure, Reply};
 
@@ -59,11 +59,12 @@ pub(crate) fn run(arguments: &EmitArguments) -> Result<Reply, Failure> {
     let number = Number::from(arguments.number);
     let extended = match (&arguments.model, &arguments.module) {
         (Some(model), Some(module)) => {
-            let text = std::fs::read_to_string(module)
-                .into_diagnostic()
-                .wrap_err_with(|| format!("{}: cannot be read", printable_path(module)))
-                .map_err(Failure::Work)?;
-            Some((ModelFile::read(model, &known())?, module_name(model)?, text))
+            let text = SourceText::read(module)?.text().to_owned();
+            Some((
+                ModelFile::read(model, &known_effects())?,
+                module_name(model)?,
+                text,
+            ))
         }
         _ => None,
     };

@@ -1,19 +1,19 @@
 //! `gyrocal extend`: the model file of an extended filter from a diagnosis.
 
-mod effects;
-
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use gyrocal::generated::MODEL_HASH;
 use gyrocal_answer::read_platform;
+use gyrocal_diagnosis::{
+    ExtensionError, ModelExtension, extension_by, extension_of, known_effects, with_members,
+};
 use gyrocal_document::{Screen, Standing};
-use gyrocal_record::{ExtensionReport, Gyros, LeftOut, SCHEMA_VERSION, printable_path};
+use gyrocal_record::{ExtensionReport, Gyros, SCHEMA_VERSION, printable_path};
+use miette::MietteDiagnostic;
 
 use crate::outputs::{manifest, refuse_overlap};
 use crate::{Failure, Reply};
-pub(crate) use effects::known;
-use effects::{Extension, of_diagnosis, of_list, with_members};
 
 /// Write the model file of an extended filter.
 ///
@@ -74,18 +74,18 @@ pub(crate) fn run(arguments: &ExtendArguments) -> Result<Reply, Failure> {
     let mut is_settled = true;
     let extension = match &arguments.diagnosis {
         Some(path) => {
-            let name = printable_path(path);
             let diagnosis = read_platform(path)?;
             is_settled = diagnosis.is_settled();
-            let diagnosis = with_members(diagnosis, &arguments.member, &name);
-            diagnosis.and_then(|diagnosis| of_diagnosis(&diagnosis, &name))
+            with_members(diagnosis, &arguments.member)
+                .and_then(|diagnosis| extension_of(&diagnosis))
+                .map_err(|error| not_extended(&printable_path(path), &error))?
         }
-        None => of_list(
-            arguments.effects.as_deref().unwrap_or_default(),
-            arguments.gyros.into(),
-        ),
-    }
-    .map_err(Failure::Work)?;
+        None => {
+            let listed = arguments.effects.as_deref().unwrap_or_default();
+            extension_by(listed, arguments.gyros.into())
+                .map_err(|error| not_extended("--effects", &error))?
+        }
+    };
     let mut screen = summary(arguments, &extension);
     if !is_settled {
         screen.fact(
@@ -94,29 +94,30 @@ pub(crate) fn run(arguments: &ExtendArguments) -> Result<Reply, Failure> {
         );
     }
     let mut shown = Reply::of(screen, String::new());
-    let text = extension.model.to_toml(&arguments.out, &known())?;
+    let text = extension.model.to_toml(&arguments.out, &known_effects())?;
     shown.outputs.stage(&arguments.out, text.as_bytes())?;
     shown.write_json(json, &report(&extension, &inputs)?)?;
     Ok(shown)
 }
 
-fn report(extension: &Extension, inputs: &[&Path]) -> Result<ExtensionReport, Failure> {
-    let left_out = extension.left_out.iter();
+/// The failure of a diagnosis or a list, with the advice.
+fn not_extended(of: &str, error: &ExtensionError) -> Failure {
+    let mut told = MietteDiagnostic::new(format!("{of}: {error}"));
+    told.help = error.advice();
+    Failure::Work(told.into())
+}
+
+fn report(extension: &ModelExtension, inputs: &[&Path]) -> Result<ExtensionReport, Failure> {
     Ok(ExtensionReport {
         schema_version: SCHEMA_VERSION,
         manifest: manifest(MODEL_HASH, 0, inputs)?,
         strapdown: extension.model.gyros == Gyros::Strapdown,
         effects: extension.model.effects.clone(),
-        left_out: left_out
-            .map(|(effect, why)| LeftOut {
-                effect: effect.clone(),
-                why: why.clone(),
-            })
-            .collect(),
+        left_out: extension.left_out.clone(),
     })
 }
 
-fn summary(arguments: &ExtendArguments, extension: &Extension) -> Screen {
+fn summary(arguments: &ExtendArguments, extension: &ModelExtension) -> Screen {
     let model = &extension.model;
     let (out, effects) = (printable_path(&arguments.out), model.effects.join(", "));
     let what = format!("{out}: the nine drift coefficients and {effects}");
@@ -138,11 +139,10 @@ fn summary(arguments: &ExtendArguments, extension: &Extension) -> Screen {
     for (id, value) in &model.shapes {
         screen.fact("built in", format!("{id} is {value}"));
     }
-    let listed = known();
-    let listed = listed
-        .iter()
-        .filter(|k| model.effects.iter().any(|id| id == k.id));
-    for id in listed.flat_map(|effect| &effect.shapes) {
+    let known = known_effects();
+    let own = known.iter();
+    let own = own.filter(|one| model.effects.iter().any(|id| id == one.id));
+    for id in own.flat_map(|effect| &effect.shapes) {
         if !model.shapes.iter().any(|(given, _)| given == id) {
             let words =
                 format!("{id} is an input of the model; give it in [shapes] to build it in");
@@ -153,8 +153,8 @@ fn summary(arguments: &ExtendArguments, extension: &Extension) -> Screen {
         let words = format!("exact equivalents of {id}: {}", others.join(", "));
         screen.fact("may also be", words);
     }
-    for (id, why) in &extension.left_out {
-        screen.fact("left out", format!("{id} {why}"));
+    for one in &extension.left_out {
+        screen.fact("left out", format!("{} {}", one.effect, one.why));
     }
     let words = "derive the filter in your package: docs/extending.md";
     screen.fact("what to do", words);

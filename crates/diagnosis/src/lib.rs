@@ -76,6 +76,7 @@ mod diagnose;
 mod distinguishability;
 mod error;
 pub mod error_budget;
+mod extension;
 mod filter_test;
 mod gate;
 mod magnitude;
@@ -104,6 +105,9 @@ pub use diagnose::{
     problems_of, record_summary, records_summary,
 };
 pub use error::DiagnosisError;
+pub use extension::{
+    ExtensionError, ModelExtension, extension_by, extension_of, known_effects, with_members,
+};
 pub use filter_test::{FILTER_EFFECT, TestedFilter};
 pub use gate::Gate;
 pub use magnitude::{MagnitudeChannel, magnitude_channel};

@@ -1,9 +1,7 @@
 //! Comparison of the diagnosis of one record with the effects injected into it.
 
 use gyrocal::effect::Role;
-use gyrocal_answer::{
-    AlternativeKind, Answer, Finding, FindingKind, Parameter, RankedEffect, Verdict,
-};
+use gyrocal_answer::{AlternativeKind, Answer, Finding, FindingKind, Parameter, RankedEffect};
 use gyrocal_calibration::NoiseModel;
 use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, diagnose};
 use gyrocal_statistics::NORMAL_97_5;
@@ -183,13 +181,7 @@ fn baseline_score(
 /// The findings of a diagnosis, without the comparison with injected effects.
 pub(crate) fn findings_score(found: &Answer) -> RecordScore {
     RecordScore {
-        verdict: match found.verdict {
-            Verdict::EffectsFound => "effects-found",
-            Verdict::Unexplained => "unexplained",
-            Verdict::NotSettled => "not-settled",
-            _ => "clean",
-        }
-        .to_owned(),
+        verdict: found.verdict.name().to_owned(),
         findings: found.causes().map(finding_score).collect(),
         noise: found
             .of_kind(FindingKind::Noise)
