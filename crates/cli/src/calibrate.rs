@@ -6,7 +6,7 @@ mod over_time;
 
 use std::path::{Path, PathBuf};
 
-use clap::{ArgAction, Args};
+use clap::Args;
 use gyrocal::generated::MODEL_HASH;
 use gyrocal_calibration::{GyroAxes, Options, Run};
 use gyrocal_diagnosis::{
@@ -16,15 +16,14 @@ use gyrocal_pages::of_calibration;
 use gyrocal_record::{
     CalibrationMethod, CalibrationReport, FittedEffects, InputRole, printable_path,
 };
-use gyrocal_setup::PlatformKind;
 use miette::miette;
 
 use crate::numbers::positive;
 use crate::outputs::manifest_of;
 use crate::page::{self, Views};
 use crate::progress::Progress;
-use crate::records::with_role;
-use crate::{Failure, Reply, exit, gyro_axes, records};
+use crate::records::{Given, with_role};
+use crate::{Failure, Reply, exit, gyro_axes};
 pub use failed::NotCalibrated;
 use failed::WrongSetup;
 use inputs::Measurement;
@@ -40,15 +39,8 @@ use inputs::Measurement;
 /// clock.
 #[derive(Debug, Args)]
 pub(crate) struct CalibrateArguments {
-    /// The records (CSV): time_s,accel_x_g,accel_y_g,accel_z_g.
-    #[arg(required = true, value_name = "RECORD.csv")]
-    records: Vec<PathBuf>,
-    /// The bench description (TOML), one for all records or one for each, in their order;
-    /// examples/data/three_days.bench.toml is one.
-    #[arg(long = "bench", value_name = "BENCH.toml", required = true, action = ArgAction::Append)]
-    benches: Vec<PathBuf>,
     #[command(flatten)]
-    map: records::Map,
+    given: Given,
     /// Write the result for programs (JSON).
     #[arg(long, value_name = "OUT.json")]
     json: Option<PathBuf>,
@@ -59,28 +51,22 @@ pub(crate) struct CalibrateArguments {
     views: Views,
     /// Average fast records over intervals of this length, 600 s at most: quicker, and without loss
     /// of information while the noise is white.
-    #[arg(long, value_name = "SECONDS", value_parser = positive)]
+    #[arg(long, value_name = "SECONDS", value_parser = positive, conflicts_with = "gyro_axes")]
     average: Option<f64>,
     /// Reduce the weight of values whose residual exceeds this many sigmas of the noise (Huber); 3 if
     /// no number is given.
     #[arg(long, value_name = "SIGMAS", num_args = 0..=1, default_missing_value = "3",
           value_parser = sigmas)]
     robust: Option<f64>,
-    /// Axes of the gyros in the platform at each row (CSV), one file for each record: for platforms
-    /// that `import strapdown` computed, whose gyros are fixed to a body. Coefficients are then
-    /// those of the gyros in their own axes.
-    #[arg(long, value_name = "AXES.csv", action = ArgAction::Append,
-          conflicts_with_all = ["average", "streaming", "paper"])]
-    gyro_axes: Vec<PathBuf>,
     /// Do not estimate the noise.
     #[arg(long)]
     no_noise: bool,
     /// Use the streaming filter that a controller embeds, instead of the batch estimator.
-    #[arg(long)]
+    #[arg(long, conflicts_with = "gyro_axes")]
     streaming: bool,
     /// Use the paper's filter: Euler angles as states, one Euler step a sample. It is consistent
     /// only with records simulated by the same rule.
-    #[arg(long, conflicts_with = "streaming")]
+    #[arg(long, conflicts_with_all = ["streaming", "gyro_axes"])]
     paper: bool,
     /// Estimate the coefficients with these effects of the catalogue in the model too, and print them beside
     /// the nominal ones; for one record.
@@ -102,10 +88,6 @@ impl CalibrateArguments {
         }
     }
 
-    fn kind(&self) -> PlatformKind {
-        gyro_axes::kind(&self.gyro_axes)
-    }
-
     fn options(&self) -> Options {
         let options = match self.method() {
             CalibrationMethod::Streaming => Options::streaming(),
@@ -122,24 +104,23 @@ impl CalibrateArguments {
 
     /// The files that are read.
     fn inputs(&self) -> Vec<(InputRole, &Path)> {
-        let mut all: Vec<_> = with_role(InputRole::Record, &self.records).collect();
-        all.extend(with_role(InputRole::Bench, &self.benches));
-        all.extend(with_role(InputRole::GyroAxes, &self.gyro_axes));
-        all.extend(self.map.input());
+        let mut all: Vec<_> = with_role(InputRole::Record, &self.given.records).collect();
+        all.extend(with_role(InputRole::Bench, &self.given.benches));
+        all.extend(with_role(InputRole::GyroAxes, &self.given.gyro_axes));
+        all.extend(self.given.map.input());
         all
     }
 
     /// Checks what clap cannot express.
     fn check(&self) -> Result<(), Failure> {
         let usage = |message: String| Err(Failure::Usage(message));
-        let records = self.records.len();
-        records::check_benches(self.benches.len(), records)?;
+        let records = self.given.records.len();
+        self.given.check()?;
         if !self.with.is_empty() && records > 1 {
             return usage(format!(
                 "--with goes with one record, {records} are given: calibrate them one by one"
             ));
         }
-        gyro_axes::check(&self.gyro_axes, records)?;
         let filter = match self.method() {
             CalibrationMethod::Batch if self.factorised => {
                 return usage(
@@ -190,11 +171,11 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Reply, Failure> {
     tracing::info!(records = measurements.len(), rows, "read");
     let options = arguments.options();
     let records = measurements.iter().map(|measurement| &measurement.record);
-    let gyro_axes = gyro_axes::read(&arguments.gyro_axes, records)?;
+    let gyro_axes = gyro_axes::read(&arguments.given.gyro_axes, records)?;
     let runs: Vec<Run<'_>> = measurements.iter().map(Measurement::run).collect();
     // First, as it refuses effects that cannot be fitted.
     let with_effects = with_effects(arguments, &runs, gyro_axes.first())?;
-    let (method, names) = (arguments.method(), arguments.records.iter());
+    let (method, names) = (arguments.method(), arguments.given.records.iter());
     let names: Vec<String> = names.map(|path| printable_path(path)).collect();
     let mut progress = match method {
         // The number of passes is not known beforehand.
@@ -227,11 +208,11 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Reply, Failure> {
         NotCalibrated::new(&names, &runs, method, arguments.factorised, source)
     })?;
     let mut answer = Reply::of_part(&page::part(
-        &arguments.records[0],
+        arguments.given.first(),
         of_calibration(&report, &[]),
     )?);
     if arguments.views.are_asked() {
-        let (record, views) = (&arguments.records[0], &arguments.views);
+        let (record, views) = (arguments.given.first(), &arguments.views);
         let part = over_time::part(record, &report, &measurements, (&gyro_axes, &options))?;
         views.stage(record, part, &mut answer)?;
     }
@@ -258,7 +239,7 @@ fn stopped(
     let report = CalibrationReport::of_wrong_setup(manifest, arguments.method(), problems);
     let mut written = Reply::default();
     // Nothing was fitted, which leaves nothing to draw.
-    let part = page::part(&arguments.records[0], of_calibration(&report, &[]))?;
+    let part = page::part(arguments.given.first(), of_calibration(&report, &[]))?;
     page::write(arguments.views.report(), vec![part], &mut written)?;
     written.write_json(arguments.json.as_deref(), &report)?;
     written.committed()?;

@@ -5,7 +5,7 @@ mod several;
 
 use std::path::{Path, PathBuf};
 
-use clap::{ArgAction, Args, ValueEnum};
+use clap::{Args, ValueEnum};
 use gyrocal::generated::MODEL_HASH;
 use gyrocal_answer::{Answer, Verdict};
 use gyrocal_calibration::{CalibrationError, Run};
@@ -20,25 +20,19 @@ use crate::outputs::{manifest_of, refuse_itself, write_answer};
 use crate::page::{self, Views};
 use crate::progress::Progress;
 use crate::records::{Given, with_role};
-use crate::{Failure, Reply, exit, gyro_axes, records};
+use crate::{Failure, Reply, exit, gyro_axes};
 pub use failed::NotDiagnosed;
 
 /// Show what the model gets wrong about a record, and name the cause.
 ///
 /// Says whether the record contradicts the model and with what probability of error, which effects
 /// of the catalogue explain it, which effects are indistinguishable and which experiment would
-/// distinguish them, the cross-validated gain, and the residual after them.
+/// distinguish them, the cross-validated gain, and the residual after them. Several records of one platform
+/// are diagnosed together, and each alone.
 #[derive(Debug, Args)]
 pub(crate) struct DiagnoseArguments {
-    /// The record (CSV): time_s,accel_x_g,accel_y_g,accel_z_g and maybe temperature_c. Several records of
-    /// one platform are diagnosed together, and each alone.
-    #[arg(value_name = "RECORD.csv", required = true)]
-    records: Vec<PathBuf>,
-    /// The bench description (TOML), one for all records or one for each, in their order.
-    #[arg(long = "bench", value_name = "BENCH.toml", required = true, action = ArgAction::Append)]
-    benches: Vec<PathBuf>,
     #[command(flatten)]
-    map: records::Map,
+    given: Given,
     /// The result to write for programs (JSON).
     #[arg(long, value_name = "OUT.json")]
     json: Option<PathBuf>,
@@ -55,12 +49,7 @@ pub(crate) struct DiagnoseArguments {
     /// Its bench description (TOML); the attitude in it is that of its own first row.
     #[arg(long, value_name = "BENCH.toml", requires = "validate")]
     validate_bench: Option<PathBuf>,
-    /// Axes of the instruments in the platform at each row (CSV), one file for each record: for platforms
-    /// that `import strapdown` computed. Coefficients and effects are then those of gyros and
-    /// accelerometers that are fixed to a body, in their own axes.
-    #[arg(long, value_name = "AXES.csv", action = ArgAction::Append, conflicts_with = "filter")]
-    gyro_axes: Vec<PathBuf>,
-    /// Those of the later record.
+    /// Axes of the instruments at each row of the later record (CSV).
     #[arg(
         long,
         value_name = "AXES.csv",
@@ -78,7 +67,7 @@ pub(crate) struct DiagnoseArguments {
     #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = probability)]
     false_alarm: f64,
     /// Also test the consistency of this filter.
-    #[arg(long, value_enum)]
+    #[arg(long, value_enum, conflicts_with = "gyro_axes")]
     filter: Option<Filter>,
     /// Exit with 3 if effects were found, with 4 if the residuals are unexplained, with 5 if the
     /// set-up is wrong.
@@ -105,26 +94,13 @@ impl DiagnoseArguments {
         }
     }
 
-    fn given(&self) -> Given<'_> {
-        Given {
-            records: &self.records,
-            benches: &self.benches,
-            axes: &self.gyro_axes,
-            map: &self.map,
-        }
-    }
-
     /// The files that are read.
     fn inputs(&self) -> Vec<(InputRole, &Path)> {
-        let mut all = self.given().inputs();
-        all.extend(with_role(InputRole::LaterRecord, &self.validate));
-        all.extend(with_role(InputRole::LaterBench, &self.validate_bench));
-        all.extend(with_role(InputRole::GyroAxes, &self.gyro_axes));
-        all.extend(with_role(
-            InputRole::LaterGyroAxes,
-            &self.validate_gyro_axes,
-        ));
-        all.extend(self.map.input());
+        let later = with_role(InputRole::LaterRecord, &self.validate);
+        let bench = with_role(InputRole::LaterBench, &self.validate_bench);
+        let axes = with_role(InputRole::LaterGyroAxes, &self.validate_gyro_axes);
+        let mut all = self.given.inputs(later.chain(bench));
+        all.extend(axes);
         all
     }
 }
@@ -132,13 +108,16 @@ impl DiagnoseArguments {
 /// Runs the command; returns the text for stdout.
 pub(crate) fn run(arguments: &DiagnoseArguments) -> Result<Reply, Failure> {
     let inputs = checked_inputs(arguments)?;
-    let ([record], [bench_path]) = (&arguments.records[..], &arguments.benches[..]) else {
+    let ([record], [bench_path]) = (&arguments.given.records[..], &arguments.given.benches[..])
+    else {
         return several::run(arguments, &inputs);
     };
     let bench = Bench::read(bench_path)?;
-    let file = arguments.map.read(record)?;
+    let file = arguments.given.map.read(record)?;
     let later = match (&arguments.validate, &arguments.validate_bench) {
-        (Some(path), Some(bench)) => Some((path, arguments.map.read(path)?, Bench::read(bench)?)),
+        (Some(path), Some(bench)) => {
+            Some((path, arguments.given.map.read(path)?, Bench::read(bench)?))
+        }
         _ => None,
     };
     let rows = file.record().len();
@@ -149,9 +128,9 @@ pub(crate) fn run(arguments: &DiagnoseArguments) -> Result<Reply, Failure> {
         return Err(failed(CalibrationError::NoAttitude.into()).into());
     }
     let mut progress = Progress::waiting("diagnosing", rows);
-    let kind = gyro_axes::kind(&arguments.gyro_axes);
+    let kind = arguments.given.kind();
     let gate = |file, bench| Gate::of_file(kind, file, bench, &options.calibration);
-    let axes = gyro_axes::read(&arguments.gyro_axes, [file.record()])?.pop();
+    let axes = gyro_axes::read(&arguments.given.gyro_axes, [file.record()])?.pop();
     let checked = gate(&file, &bench)?.with_gyro_axes(axes);
     let mut diagnosis =
         match diagnose_watched(checked, &bench, &options, |stage| progress.at(stage)) {
@@ -186,8 +165,8 @@ pub(crate) fn run(arguments: &DiagnoseArguments) -> Result<Reply, Failure> {
 
 /// The files that are read. Arguments that contradict each other are refused before that.
 fn checked_inputs(arguments: &DiagnoseArguments) -> Result<Vec<(InputRole, &Path)>, Failure> {
-    arguments.given().check()?;
-    let is_unit = !arguments.gyro_axes.is_empty();
+    arguments.given.check()?;
+    let is_unit = !arguments.given.gyro_axes.is_empty();
     if is_unit && arguments.validate.is_some() && arguments.validate_gyro_axes.is_none() {
         return Err(Failure::Usage(
             "--gyro-axes with --validate: give those of the later record, --validate-gyro-axes AXES.csv"
@@ -202,7 +181,7 @@ fn checked_inputs(arguments: &DiagnoseArguments) -> Result<Vec<(InputRole, &Path
     ];
     let json = arguments.json.as_deref();
     arguments.views.check(&inputs, json, &tables)?;
-    refuse_itself(arguments.validate.as_deref(), &arguments.records)?;
+    refuse_itself(arguments.validate.as_deref(), &arguments.given.records)?;
     if arguments.effects.iter().any(|id| id == FILTER_EFFECT) {
         return Err(Failure::Usage(format!(
             "{} is an error of a filter and not of the record: --filter euler tests it",

@@ -3,11 +3,10 @@
 mod failed;
 mod found;
 mod options;
-mod several;
 
 use std::path::{Path, PathBuf};
 
-use clap::{ArgAction, Args, ValueEnum};
+use clap::{Args, ValueEnum};
 use gyrocal::generated::MODEL_HASH;
 use gyrocal_calibration::Run;
 use gyrocal_design::{Aim, PlanOptions, plan};
@@ -19,7 +18,7 @@ use crate::outputs::manifest_of;
 use crate::page::Views;
 use crate::progress::Progress;
 use crate::records::{Given, with_role};
-use crate::{Failure, Reply, records};
+use crate::{Failure, Reply};
 pub use failed::NotPlanned;
 use options::{durations_s, goal, limit, limits, refuse_repeated, wished_sigma};
 
@@ -28,25 +27,15 @@ use options::{durations_s, goal, limit, limits, refuse_repeated, wished_sigma};
 /// Searches the attitudes within the gimbal limits for the run that reduces the confidence sets of
 /// the findings most, or the sigmas of the coefficients, and predicts the joint result of records
 /// and run. The records are diagnosed first unless a diagnosis is given. Of a strapdown unit
-/// (--gyro-axes) the next run is a log at rest in another attitude of the unit.
+/// (--gyro-axes) the next run is a log at rest in another attitude of the unit. Of several records of one
+/// platform the run follows the last.
 #[derive(Debug, Args)]
 pub(crate) struct PlanArguments {
-    /// The record (CSV): time_s,accel_x_g,accel_y_g,accel_z_g and optionally temperature_c. Of several
-    /// records of one platform the run follows the last.
-    #[arg(value_name = "RECORD.csv", required = true)]
-    records: Vec<PathBuf>,
-    /// The bench description (TOML), one for all records or one for each, in their order.
-    #[arg(long = "bench", value_name = "BENCH.toml", required = true, action = ArgAction::Append)]
-    benches: Vec<PathBuf>,
     #[command(flatten)]
-    map: records::Map,
+    given: Given,
     /// Result of `gyrocal diagnose --json` for these records; without it they are diagnosed.
     #[arg(long, value_name = "DIAGNOSIS.json", conflicts_with_all = ["effects", "false_alarm"])]
     diagnosis: Option<PathBuf>,
-    /// Axes of the instruments in the platform at each row (CSV), one file for each record: for platforms
-    /// that `import strapdown` computed. Attitudes are then those of the unit.
-    #[arg(long, value_name = "AXES.csv", action = ArgAction::Append)]
-    gyro_axes: Vec<PathBuf>,
     /// Write the result for programs (JSON).
     #[arg(long, value_name = "OUT.json")]
     json: Option<PathBuf>,
@@ -83,22 +72,10 @@ pub(crate) struct PlanArguments {
 }
 
 impl PlanArguments {
-    fn given(&self) -> Given<'_> {
-        Given {
-            records: &self.records,
-            benches: &self.benches,
-            axes: &self.gyro_axes,
-            map: &self.map,
-        }
-    }
-
     /// The files that are read: each record with its bench file, then axes, in the order of the records.
     fn inputs(&self) -> Vec<(InputRole, &Path)> {
-        let mut all = self.given().inputs();
-        all.extend(with_role(InputRole::GyroAxes, &self.gyro_axes));
-        all.extend(with_role(InputRole::Diagnosis, &self.diagnosis));
-        all.extend(self.map.input());
-        all
+        let diagnosis = with_role(InputRole::Diagnosis, &self.diagnosis);
+        self.given.inputs(diagnosis)
     }
 }
 
@@ -116,13 +93,13 @@ const DIAGNOSED: f64 = 0.5;
 
 /// Runs the command; returns the text for stdout.
 pub(crate) fn run(arguments: &PlanArguments) -> Result<Reply, Failure> {
-    arguments.given().check()?;
+    arguments.given.check()?;
     let read = arguments.inputs();
     let inputs: Vec<&Path> = read.iter().map(|(_, path)| *path).collect();
     refuse_repeated(&arguments.limits)?;
     let json = arguments.json.as_deref();
     arguments.views.check(&inputs, json, &[])?;
-    let (files, benches) = arguments.given().read()?;
+    let (files, benches) = arguments.given.read()?;
     let rows = files.iter().map(|file| file.record().len()).sum();
     tracing::info!(rows, records = files.len(), "read");
     let mut progress = Progress::waiting("planning", rows);
@@ -146,14 +123,14 @@ pub(crate) fn run(arguments: &PlanArguments) -> Result<Reply, Failure> {
         ..PlanOptions::default()
     };
     let mut planned = plan(&known.fitted, &run, &known.named, &options)
-        .map_err(|source| NotPlanned::new(&arguments.records, source))?;
+        .map_err(|source| NotPlanned::new(&arguments.given.records, source))?;
     drop(progress);
     planned.setup.clone_from(&known.setup);
     planned.manifest = manifest_of(MODEL_HASH, options.seed, &read)?;
     let part = of_plan(&planned);
     let mut answer = Reply::of_part(&part);
     let views = &arguments.views;
-    views.stage(&arguments.records[0], part, &mut answer)?;
+    views.stage(arguments.given.first(), part, &mut answer)?;
     answer.write_json(json, &planned)?;
     Ok(answer)
 }

@@ -2,11 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::Args;
+use clap::{ArgAction, Args};
 use gyrocal_calibration::{Options, shared_rows};
 use gyrocal_diagnosis::{Gate, RecordToDiagnose};
 use gyrocal_instruments::{Description, read_any};
 use gyrocal_record::{Bench, InputRole, Record, RecordFile, printable_path};
+use gyrocal_setup::PlatformKind;
 use gyrocal_words::counted;
 use miette::miette;
 
@@ -55,58 +56,92 @@ pub(crate) fn with_role<'a>(
     paths.map(move |path| (role, path.as_path()))
 }
 
-/// Records of one platform with their bench files, one for all records or one for each, axes of their
-/// instruments and map of columns.
-#[derive(Clone, Copy)]
-pub(crate) struct Given<'a> {
-    pub(crate) records: &'a [PathBuf],
-    pub(crate) benches: &'a [PathBuf],
-    pub(crate) axes: &'a [PathBuf],
-    pub(crate) map: &'a Map,
+/// Records of one platform with their bench files, map of columns and axes of their instruments.
+#[derive(Clone, Debug, Args)]
+pub(crate) struct Given {
+    /// The record (CSV): time_s,accel_x_g,accel_y_g,accel_z_g and maybe temperature_c; or several of one
+    /// platform.
+    #[arg(value_name = "RECORD.csv", required = true)]
+    pub(crate) records: Vec<PathBuf>,
+    /// The bench description (TOML), one for all records or one for each, in their order;
+    /// examples/data/three_days.bench.toml is one.
+    #[arg(long = "bench", value_name = "BENCH.toml", required = true, action = ArgAction::Append)]
+    pub(crate) benches: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(crate) map: Map,
+    /// Axes of the instruments in the platform at each row (CSV), one file for each record: for platforms
+    /// that `import strapdown` computed. Coefficients and effects are then those of gyros and
+    /// accelerometers that are fixed to a body, in their own axes.
+    #[arg(long, value_name = "AXES.csv", action = ArgAction::Append)]
+    pub(crate) gyro_axes: Vec<PathBuf>,
 }
 
-impl<'a> Given<'a> {
+impl Given {
+    /// The first record.
+    pub(crate) fn first(&self) -> &Path {
+        &self.records[0]
+    }
+
+    /// Kind of the platform.
+    pub(crate) fn kind(&self) -> PlatformKind {
+        gyro_axes::kind(&self.gyro_axes)
+    }
+
     /// Refuses other numbers of bench files and axes than those of the records.
-    pub(crate) fn check(self) -> Result<(), Failure> {
-        check_benches(self.benches.len(), self.records.len())?;
-        gyro_axes::check(self.axes, self.records.len())
+    pub(crate) fn check(&self) -> Result<(), Failure> {
+        let (benches, records) = (self.benches.len(), self.records.len());
+        if benches != 1 && benches != records {
+            return Err(Failure::Usage(format!(
+                "{benches} bench files for {}: give --bench once for all records, or once for each in their order",
+                counted(records, "record")
+            )));
+        }
+        gyro_axes::check(&self.gyro_axes, records)
     }
 
     /// Each record with its bench file.
-    pub(crate) fn pairs(self) -> impl Iterator<Item = (&'a PathBuf, &'a PathBuf)> {
+    pub(crate) fn pairs(&self) -> impl Iterator<Item = (&PathBuf, &PathBuf)> {
         self.records.iter().zip(self.benches.iter().cycle())
     }
 
-    /// The same one after the other.
-    pub(crate) fn inputs(self) -> Vec<(InputRole, &'a Path)> {
-        let pairs = self.pairs();
+    /// The same one after the other, then `further` files, axes and map.
+    pub(crate) fn inputs<'a>(
+        &'a self,
+        further: impl IntoIterator<Item = (InputRole, &'a Path)>,
+    ) -> Vec<(InputRole, &'a Path)> {
+        let pairs = self.pairs().flat_map(|(record, bench)| {
+            [(InputRole::Record, &**record), (InputRole::Bench, &**bench)]
+        });
+        let axes = with_role(InputRole::GyroAxes, &self.gyro_axes);
         pairs
-            .flat_map(|(record, bench)| {
-                [(InputRole::Record, &**record), (InputRole::Bench, &**bench)]
-            })
+            .chain(further)
+            .chain(axes)
+            .chain(self.map.input())
             .collect()
     }
 
-    /// Reads each record with its bench file.
-    pub(crate) fn read(self) -> Result<(Vec<RecordFile>, Vec<Bench>), Failure> {
-        let benches = self.pairs().map(|(_, bench)| Bench::read(bench));
-        let benches = benches.collect::<Result<_, _>>()?;
+    /// Reads each record with its bench file; refuses benches that contradict each other.
+    pub(crate) fn read(&self) -> Result<(Vec<RecordFile>, Vec<Bench>), Failure> {
+        let paths = || self.pairs().map(|(_, path)| &**path);
+        let benches = paths().map(Bench::read);
+        let benches: Vec<Bench> = benches.collect::<Result<_, _>>()?;
+        refuse_differing(&paths().zip(&benches).collect::<Vec<_>>())?;
         let files = self.records.iter().map(|path| self.map.read(path));
         Ok((files.collect::<Result<_, _>>()?, benches))
     }
 
     /// Each record with its axes, its set-up checked; refuses two that share rows.
-    pub(crate) fn checked<'b>(
-        self,
-        files: &'b [RecordFile],
-        benches: &'b [Bench],
+    pub(crate) fn checked<'a>(
+        &self,
+        files: &'a [RecordFile],
+        benches: &'a [Bench],
         options: &Options,
-    ) -> Result<Vec<RecordToDiagnose<'b>>, Failure> {
+    ) -> Result<Vec<RecordToDiagnose<'a>>, Failure> {
         let records = || files.iter().map(RecordFile::record);
         let paths = self.records.iter().map(PathBuf::as_path);
         refuse_shared_rows(&paths.zip(records()).collect::<Vec<_>>())?;
-        let kind = gyro_axes::kind(self.axes);
-        let mut axes = gyro_axes::read(self.axes, records())?.into_iter();
+        let kind = self.kind();
+        let mut axes = gyro_axes::read(&self.gyro_axes, records())?.into_iter();
         let all = self.records.iter().zip(files).zip(benches);
         let checked = all.map(|((path, file), bench)| {
             let gate = Gate::of_file(kind, file, bench, options)?;
@@ -120,15 +155,33 @@ impl<'a> Given<'a> {
     }
 }
 
-/// Refuses a number of bench files that is neither one nor that of the records.
-pub(crate) fn check_benches(benches: usize, records: usize) -> Result<(), Failure> {
-    if benches == 1 || benches == records {
-        return Ok(());
+/// Refuses benches with different priors, as the coefficients are shared, and with different
+/// uncertainties of one site.
+fn refuse_differing(benches: &[(&Path, &Bench)]) -> Result<(), Failure> {
+    let differ = |path: &Path, what: &str, other: &Path, advice: &str| {
+        Err(Failure::Work(miette!(
+            help = advice,
+            "{}: found {what} other than in {}, expected the same",
+            printable_path(path),
+            printable_path(other),
+        )))
+    };
+    for (index, (path, bench)) in benches.iter().enumerate() {
+        for (other, earlier) in &benches[..index] {
+            if bench.prior != earlier.prior {
+                let advice = "the coefficients are those of one platform: give [prior] the same \
+                              values in each bench file";
+                return differ(path, "a [prior]", other, advice);
+            }
+            let site = |bench: &Bench| (bench.latitude_deg, bench.gravity);
+            if site(bench) == site(earlier) && bench.uncertainty != earlier.uncertainty {
+                let advice = "both give the same latitude and gravity: give them the same sigmas";
+                let what = "uncertainties of the same site";
+                return differ(path, what, other, advice);
+            }
+        }
     }
-    Err(Failure::Usage(format!(
-        "{benches} bench files for {}: give --bench once for all records, or once for each in their order",
-        counted(records, "record")
-    )))
+    Ok(())
 }
 
 /// Refuses records of which two have rows in common: each row counts once.

@@ -1,14 +1,12 @@
 //! The next run for a record.
 
-use std::borrow::Cow;
-
 use gyrocal::generated::MODEL_HASH;
 use gyrocal_answer::Answer;
-use gyrocal_calibration::{FittedPlatform, Options, Run};
+use gyrocal_calibration::Run;
 use gyrocal_cli::NotPlanned;
-use gyrocal_design::{Aim, DesignError, Goal, NamedCause, PlanOptions, noise_of, plan as design};
-use gyrocal_diagnosis::diagnose_gated;
-use gyrocal_record::{AXES, GimbalLimits, InputRole, Record, SetupProblem, SourceText};
+use gyrocal_design::{Aim, DesignError, Goal, Known, NotKnown, PlanOptions, plan as design};
+use gyrocal_diagnosis::{RecordToDiagnose, diagnose_gated};
+use gyrocal_record::{AXES, GimbalLimits, InputRole, SourceText};
 use pyo3::prelude::*;
 
 use crate::axes::{Axes, GivenAxes};
@@ -70,14 +68,6 @@ pub(crate) fn plan(
     Ok(py.detach(|| answer(given, &request, command))?)
 }
 
-/// Starting point of a plan.
-struct Known<'a> {
-    record: Cow<'a, Record>,
-    setup: Vec<SetupProblem>,
-    fitted: FittedPlatform<'a>,
-    named: Vec<NamedCause>,
-}
-
 fn answer(given: Given<'_>, request: &Request, command: &str) -> Outcome<String> {
     let known = match &request.diagnosis {
         Some(diagnosis) => written(given, diagnosis)?,
@@ -114,12 +104,7 @@ fn made<'a>(given: Given<'a>, request: &Request) -> Outcome<Known<'a>> {
         &options,
     )
     .map_err(|source| given.no_diagnosis(source))?;
-    Ok(Known {
-        named: NamedCause::all(&found.result),
-        fitted: found.extended.unwrap_or(found.nominal),
-        record: found.record,
-        setup: found.result.setup,
-    })
+    Ok(found.into())
 }
 
 /// Takes a diagnosis of the record.
@@ -128,28 +113,15 @@ fn written<'a>(given: Given<'a>, diagnosis: &str) -> Outcome<Known<'a>> {
     let diagnosis = gyrocal_answer::read_platform_text(&source)?;
     refuse(given, &diagnosis)?;
     check_inputs(given, &diagnosis)?;
-    let named = NamedCause::all(&diagnosis);
     let options = options(Vec::new(), diagnosis.false_alarm_probability, false)?;
-    let gate = given.gate_with_axes(&options)?;
-    let failed = |source| given.no_diagnosis(source);
-    let axes = gate.usable_axes().map_err(|source| failed(source.into()))?;
-    let (record, setup) = gate.sound(&options).map_err(failed)?;
-    let fitted = {
-        let run = Run {
-            record: &record,
-            bench: &given.bench.bench,
-        };
-        let noise = noise_of(&diagnosis);
-        let settings = Options::default();
-        NamedCause::fitted_of_unit(&named, &run, axes.as_ref(), &noise, &settings)
-            .map_err(|source| no_plan(given, source))?
-            .into_owned()
+    let record = RecordToDiagnose {
+        name: given.record.input.path.clone(),
+        gate: given.gate_with_axes(&options)?,
+        bench: &given.bench.bench,
     };
-    Ok(Known {
-        record,
-        setup,
-        fitted,
-        named,
+    Known::written(&diagnosis, vec![record]).map_err(|error| match error {
+        NotKnown::Record(source) => given.no_diagnosis(source),
+        NotKnown::Fit(source) => no_plan(given, source),
     })
 }
 

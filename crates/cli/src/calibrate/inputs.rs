@@ -1,7 +1,7 @@
 //! Records and bench descriptions, read and checked against each other.
 
 use std::borrow::Cow;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use gyrocal_calibration::{Options, Run, average_record};
 use gyrocal_diagnosis::{CalibratedRecord, Gate};
@@ -50,26 +50,19 @@ impl Measurement {
 /// Reads records and benches (one for all records or one for each), leaves out what gross errors of
 /// the set-ups spoilt, averages if requested, and refuses inputs that cannot belong together.
 pub(super) fn read(arguments: &CalibrateArguments) -> Result<Vec<Measurement>, Failure> {
-    let (records, benches) = (&arguments.records, &arguments.benches);
-    let (average_s, kind) = (arguments.average, arguments.kind());
-    refuse_twins(records)?;
-    let read: Vec<Bench> = benches
-        .iter()
-        .map(|path| Bench::read(path))
-        .collect::<Result<_, _>>()?;
-    refuse_differing(benches, &read)?;
-    let mut measurements = Vec::with_capacity(records.len());
-    for (index, path) in records.iter().enumerate() {
-        let bench = if benches.len() == 1 { 0 } else { index };
-        let file = arguments.map.read(path)?;
-        let found = Gate::of_file(kind, &file, &read[bench], &Options::default())?;
+    let given = &arguments.given;
+    refuse_twins(&given.records)?;
+    let (files, benches) = given.read()?;
+    let mut measurements = Vec::with_capacity(files.len());
+    for (((path, bench_path), file), bench) in given.pairs().zip(&files).zip(benches.iter()) {
+        let found = Gate::of_file(given.kind(), file, bench, &Options::default())?;
         let stops = found.stops();
         let record = found.usable;
         let record = record.map_or_else(|| found.record.clone(), Cow::into_owned);
         measurements.push(Measurement {
             path: path.clone(),
-            bench_path: benches[bench].clone(),
-            bench: read[bench].clone(),
+            bench_path: bench_path.clone(),
+            bench: bench.clone(),
             averaged: None,
             stops,
             rows: record.len(),
@@ -82,7 +75,7 @@ pub(super) fn read(arguments: &CalibrateArguments) -> Result<Vec<Measurement>, F
         .map(|one| (&*one.path, &one.record))
         .collect();
     refuse_shared_rows(&named)?;
-    if let Some(interval_s) = average_s
+    if let Some(interval_s) = arguments.average
         && !measurements.iter().any(|measurement| measurement.stops)
     {
         for measurement in &mut measurements {
@@ -104,35 +97,6 @@ fn refuse_twins(records: &[PathBuf]) -> Result<(), Failure> {
                 printable_path(&records[first]),
                 printable_path(&records[index])
             )));
-        }
-    }
-    Ok(())
-}
-
-/// Refuses benches with different priors, as the coefficients are shared, and with different
-/// uncertainties of one site.
-fn refuse_differing(paths: &[PathBuf], benches: &[Bench]) -> Result<(), Failure> {
-    let differ = |path: &Path, what: &str, other: &Path, advice: &str| {
-        Err(Failure::Work(miette!(
-            help = advice,
-            "{}: found {what} other than in {}, expected the same",
-            printable_path(path),
-            printable_path(other),
-        )))
-    };
-    for (index, bench) in benches.iter().enumerate() {
-        for (other, earlier) in benches[..index].iter().enumerate() {
-            if bench.prior != earlier.prior {
-                let advice = "the coefficients are those of one platform: give [prior] the same \
-                              values in each bench file";
-                return differ(&paths[index], "a [prior]", &paths[other], advice);
-            }
-            let site = |bench: &Bench| (bench.latitude_deg, bench.gravity);
-            if site(bench) == site(earlier) && bench.uncertainty != earlier.uncertainty {
-                let advice = "both give the same latitude and gravity: give them the same sigmas";
-                let what = "uncertainties of the same site";
-                return differ(&paths[index], what, &paths[other], advice);
-            }
         }
     }
     Ok(())

@@ -19,14 +19,15 @@ pub(super) fn run(
     inputs: &[(InputRole, &Path)],
 ) -> Result<Reply, Failure> {
     refuse_options(arguments)?;
-    let (files, benches) = arguments.given().read()?;
+    let (files, benches) = arguments.given.read()?;
     let options = arguments.options();
     let rows = files.iter().map(|file| file.record().len()).sum();
     tracing::info!(rows, records = files.len(), "read");
     let mut progress = Progress::waiting("diagnosing", rows);
-    let given = arguments.given();
-    let checked = given.checked(&files, &benches, &options.calibration)?;
-    let failed = |source| NotDiagnosed::new(&arguments.records[0], &benches[0], source);
+    let checked = arguments
+        .given
+        .checked(&files, &benches, &options.calibration)?;
+    let failed = |source| NotDiagnosed::new(arguments.given.first(), &benches[0], source);
     let mut found =
         diagnose_records(checked, &options, |stage| progress.at(stage)).map_err(failed)?;
     drop(progress);
@@ -36,10 +37,16 @@ pub(super) fn run(
     let mut answer = Reply::of_answer(result);
     if arguments.views.are_asked() {
         let mut parts = vec![of_result(result)];
-        for ((record, alone), bench) in arguments.records.iter().zip(&found.alone).zip(&benches) {
+        for ((record, alone), bench) in arguments
+            .given
+            .records
+            .iter()
+            .zip(&found.alone)
+            .zip(&benches)
+        {
             parts.push(page::part(record, of_diagnosis(alone, bench))?);
         }
-        let (views, record) = (&arguments.views, &arguments.records[0]);
+        let (views, record) = (&arguments.views, arguments.given.first());
         views.stage_parts(record, parts, drawn, &mut answer)?;
     }
     finished(arguments, result, answer)
@@ -68,7 +75,7 @@ fn refuse_options(arguments: &DiagnoseArguments) -> Result<(), Failure> {
     match one.into_iter().find(|(_, given)| *given) {
         Some((option, _)) => Err(Failure::Usage(format!(
             "{option} goes with one record, {} are given: diagnose that record by itself",
-            arguments.records.len()
+            arguments.given.records.len()
         ))),
         None => Ok(()),
     }

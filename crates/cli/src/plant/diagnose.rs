@@ -3,20 +3,17 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use gyrocal_answer::write_text;
 use gyrocal_pages::{Part, of_plant, of_result, pictures};
 use gyrocal_plant::{
     ColumnMap, DiagnosedRecords, LoadedPlant, NamedRecord, PlantError, SearchOptions,
     diagnose_records,
 };
 use gyrocal_record::{Manifest, printable_path};
-use miette::Report;
 
 use crate::numbers::probability;
-use crate::outputs::{manifest, refuse_itself};
+use crate::outputs::{manifest, refuse_itself, write_answer};
 use crate::page::Views;
 use crate::progress::Progress;
-use crate::reply::RESULT;
 use crate::{Failure, Reply, page};
 
 /// Find what the model of this plant lacks in a record, or in several.
@@ -99,9 +96,7 @@ pub(super) fn run(
         let (views, record) = (&arguments.views, &arguments.records[0]);
         views.stage_parts(record, parts, together, &mut shown)?;
     }
-    shown.write(arguments.json.as_deref(), RESULT, |_| {
-        write_text(answer).map_err(|error| Failure::Work(Report::msg(error)))
-    })?;
+    write_answer(arguments.json.as_deref(), answer, &mut shown)?;
     Ok(shown)
 }
 
