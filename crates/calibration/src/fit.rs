@@ -32,8 +32,6 @@ pub struct FitStatistics {
     values: usize,
     rows: usize,
     log_likelihood: f64,
-    /// From one pass of the filter, not from an iterated solution.
-    one_pass: bool,
 }
 
 /// Result of the consistency test: mean NIS against its chi-square band.
@@ -102,40 +100,6 @@ impl FitStatistics {
         is_gross(self.nis_mean())
     }
 
-    /// The result of the consistency test in a few sentences.
-    #[must_use]
-    pub fn consistency_text(&self) -> String {
-        let [low, high] = self.nis_band();
-        let mean = self.nis_mean();
-        let statistic = format!("mean NIS {mean:.3}, 99.9 % band {low:.3} to {high:.3}");
-        match self.consistency() {
-            Consistency::Consistent => format!(
-                "Consistency test passed: the innovations agree with the declared noise ({statistic})."
-            ),
-            Consistency::Overconfident if self.is_gross() => format!(
-                "Consistency test failed: the innovations are far larger than the declared noise \
-                 predicts ({statistic}). Check the units of [noise] and time, that up is positive, and \
-                 the latitude and initial angles of the bench file; the coefficients are not \
-                 usable."
-            ),
-            Consistency::Overconfident => format!(
-                "Consistency test failed: the innovations are larger than the declared noise \
-                 predicts ({statistic}). {}; the sigmas are too small.",
-                if self.one_pass {
-                    "The model is incomplete, the noise is larger than declared, or the prior is \
-                     too wide for the streaming filter"
-                } else {
-                    "The model is incomplete, or the noise is larger than declared"
-                }
-            ),
-            Consistency::Underconfident => format!(
-                "Consistency test failed: the innovations are smaller than the declared noise \
-                 predicts ({statistic}). The noise is smaller than declared; the sigmas are too \
-                 large."
-            ),
-        }
-    }
-
     /// Sums before the first innovation; they have no band yet.
     pub(crate) fn of_nothing() -> Self {
         Self {
@@ -143,7 +107,6 @@ impl FitStatistics {
             values: 0,
             rows: 0,
             log_likelihood: 0.0,
-            one_pass: true,
         }
     }
 
@@ -167,7 +130,6 @@ impl FitStatistics {
             log_likelihood: -0.5
                 * (solution.cost + solution.log_variance + prior - gained
                     + solution.values as f64 * core::f64::consts::TAU.ln()),
-            one_pass: false,
         }
     }
 
@@ -191,18 +153,10 @@ mod tests {
             values: 12_000,
             rows: 4_000,
             log_likelihood: 0.0,
-            one_pass: true,
         };
         assert_eq!(fit(12_000.0).consistency(), Consistency::Consistent);
         assert_eq!(fit(13_000.0).consistency(), Consistency::Overconfident);
         assert_eq!(fit(11_000.0).consistency(), Consistency::Underconfident);
-        let one_pass = fit(13_000.0);
-        assert!(one_pass.consistency_text().contains("mean NIS 3.250"));
-        assert!(one_pass.consistency_text().contains("streaming filter"));
-        let joint = FitStatistics {
-            one_pass: false,
-            ..one_pass
-        };
-        assert!(!joint.consistency_text().contains("streaming filter"));
+        assert_eq!(fit(13_000.0).nis_mean(), 3.25);
     }
 }

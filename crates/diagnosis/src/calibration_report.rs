@@ -89,11 +89,10 @@ pub fn calibrate_and_diagnose(
     let first = first_run_sigmas(&runs, axes, options);
     let first = first.inspect_err(|error| told(CalibrationStep::FirstNotAlone(error)));
     let fit = &calibration.fit;
-    let names: Vec<String> = given.iter().map(|one| one.name.clone()).collect();
-    let verdict = calibration_verdict(fit, &names, &effects);
+    let verdict = calibration_verdict(fit, &effects);
     let setup = given.iter().flat_map(|record| record.setup);
     let runs = given.iter().zip(&calibration.runs);
-    Ok(CalibrationReport {
+    let mut report = CalibrationReport {
         schema_version: CALIBRATION_SCHEMA_VERSION,
         setup: setup.cloned().collect(),
         effects,
@@ -105,8 +104,8 @@ pub fn calibrate_and_diagnose(
         covariance: calibration.covariance.map(Vec::from).to_vec(),
         nis_mean: Some(fit.nis_mean()),
         nis_band: Some(fit.nis_band()),
-        verdict: verdict.verdict,
-        verdict_text: verdict.text,
+        verdict,
+        verdict_text: String::new(),
         iterations: calibration.iterations,
         usable: !fit.is_gross(),
         records: records(given),
@@ -119,7 +118,9 @@ pub fn calibrate_and_diagnose(
         first_record_sigmas: first.unwrap_or(None).map(Vec::from),
         with_effects: request.with_effects,
         manifest: request.manifest,
-    })
+    };
+    report.verdict_text = gyrocal_words::calibration_verdict(&report);
+    Ok(report)
 }
 
 fn coefficient(found: CoefficientEstimate) -> Coefficient {

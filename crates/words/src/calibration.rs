@@ -2,6 +2,7 @@
 
 mod screen;
 mod tables;
+mod verdict;
 
 use gyrocal_document::{List, Words};
 use gyrocal_record::{
@@ -11,6 +12,7 @@ use gyrocal_record::{
 use gyrocal_statistics::format;
 
 pub use screen::calibration_screen;
+pub use verdict::calibration_verdict;
 
 use crate::diagnosis::is_correlation;
 use crate::files::joined;

@@ -15,7 +15,7 @@ mod files;
 mod format;
 pub mod plant;
 
-pub use calibration::{calibration, calibration_screen};
+pub use calibration::{calibration, calibration_screen, calibration_verdict};
 pub use diagnosis::{
     SET_UPS_WITHOUT_ANGLES, alone, explained, files, findings, first_screen, groups,
     is_correlation, likelihood, may_also_be, near_twins, not_settled, not_tested, over_sets,

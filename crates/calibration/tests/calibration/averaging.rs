@@ -135,7 +135,7 @@ fn the_noise_of_means_is_the_declared_one_and_the_coefficients_are_those_of_the_
         means.fit.consistency(),
         Consistency::Consistent,
         "{}",
-        means.fit.consistency_text()
+        means.fit.nis_mean()
     );
     let samples = calibrate(&fast.record, &fast.bench, &Options::default(), |_| ()).unwrap();
     for (one, other) in means.coefficients().iter().zip(samples.coefficients()) {

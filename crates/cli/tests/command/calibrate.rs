@@ -59,7 +59,7 @@ fn the_record_that_ships_gives_the_coefficients_of_its_scenario() {
         "{said}"
     );
     assert!(
-        said.contains("Consistency test passed: the innovations agree with the declared noise"),
+        said.contains("Data, model and declared noise agree. Mean NIS"),
         "{said}"
     );
     assert!(
@@ -111,7 +111,7 @@ fn the_json_has_every_field_of_its_contract() {
     );
     assert_eq!(json["rows"], 4321);
     assert_eq!(json["verdict"], "consistent");
-    assert!(json["verdict_text"].as_str().unwrap().contains("mean NIS"));
+    assert!(json["verdict_text"].as_str().unwrap().contains("Mean NIS"));
 
     let names = [
         "bias", "g_x", "g_xx", "bias", "g_y", "g_yy", "bias", "g_z", "g_zz",
@@ -236,7 +236,7 @@ fn the_filter_of_the_paper_does_not_fit_what_it_did_not_simulate() {
     let said = folder.succeed(&arguments);
     assert!(
         said.contains(
-            "Consistency test failed: the innovations are larger than the declared noise"
+            "The innovations are larger than the declared noise: the sigmas are too small."
         ),
         "{said}"
     );

@@ -149,7 +149,7 @@ fn reports_of_a_calibration() {
     ];
     assert_page(&folder, "c.html", &words);
     // The verdict in a sentence, with the band of its test.
-    assert_page(&folder, "c.html", &["99.9 % band"]);
+    assert_page(&folder, "c.html", &["Mean NIS"]);
     assert_same_screen(&folder, "c.html", &said);
     // A written result has the verdict of the command, also where its coefficients mean nothing.
     folder.succeed(&["report", "c.json"]);

@@ -1,12 +1,13 @@
 //! The first screen of a calibration.
 
+use super::verdict::{heading, how_sure};
 use super::{has_several, is_correlated, latitude, record_line, tables};
 use crate::diagnosis::parameter_values;
 use crate::files::{few, input_files, joined, record_and_bench};
 use crate::format::{tested, with_sigma};
 use gyrocal::EFFECTS;
 use gyrocal_answer::Parameter;
-use gyrocal_document::{Column, Screen, Standing, Table};
+use gyrocal_document::{Column, Screen, Table};
 use gyrocal_record::{
     CalibrationReport, EffectTest, FitVerdict, FittedEffects, InputRole, NamedCause, NoiseEstimate,
     NoiseRatio,
@@ -20,7 +21,8 @@ const NAMES_SHOWN: usize = 4;
 /// Verdict, how sure it is, the nine coefficients, and what to run next.
 #[must_use]
 pub fn calibration_screen(report: &CalibrationReport) -> Screen {
-    let mut screen = verdict(report);
+    let (standing, verdict, what) = heading(report);
+    let mut screen = Screen::new(standing, verdict, what);
     if report.verdict == FitVerdict::Setup {
         for problem in &report.setup {
             screen.fact("what is wrong", problem.text());
@@ -77,74 +79,6 @@ fn next(report: &CalibrationReport, screen: &mut Screen) {
     screen.then(format!("gyrocal diagnose {files}"), why);
 }
 
-fn verdict(report: &CalibrationReport) -> Screen {
-    let of = match has_several(report) {
-        true => "the records show",
-        false => "the record shows",
-    };
-    let nominal = match report.with_effects {
-        None => "the model lacks: the coefficients may be biased",
-        Some(_) => "the nominal model lacks",
-    };
-    let (standing, verdict, what) = match report.verdict {
-        FitVerdict::Setup => (Standing::Bad, "SET-UP WRONG", report.verdict_text.clone()),
-        _ if !report.usable => (
-            Standing::Bad,
-            "NOT USABLE",
-            "the innovations are far larger than the noise: the coefficients are not usable"
-                .to_owned(),
-        ),
-        FitVerdict::EffectsFound => (
-            Standing::Bad,
-            "FAULT",
-            format!("{of} an effect that {nominal}"),
-        ),
-        FitVerdict::NotSettled => (
-            Standing::Bad,
-            "NOT SETTLED",
-            "the diagnosis could not tell what the model lacks: the coefficients may be biased"
-                .to_owned(),
-        ),
-        FitVerdict::TooLarge => (
-            Standing::Doubtful,
-            "MISFIT",
-            "the innovations are larger than the declared noise: the sigmas are too small"
-                .to_owned(),
-        ),
-        FitVerdict::TooSmall => (
-            Standing::Doubtful,
-            "MISFIT",
-            "the innovations are smaller than the declared noise: the sigmas are too large"
-                .to_owned(),
-        ),
-        FitVerdict::Unexplained => (
-            Standing::Bad,
-            "UNEXPLAINED",
-            "the innovations are not white, and no effect of the catalogue is significant"
-                .to_owned(),
-        ),
-        FitVerdict::NoiseDiffers => (
-            Standing::Doubtful,
-            "MISFIT",
-            format!(
-                "the noise differs from the declared ({}): the sigmas are not those of this noise",
-                noise_found(report).join(", ")
-            ),
-        ),
-        _ if report.effects.len() < report.records.len() => (
-            Standing::Doubtful,
-            "CALIBRATED",
-            "innovations and declared noise agree; no diagnosis could be made".to_owned(),
-        ),
-        _ => (
-            Standing::Good,
-            "CALIBRATED",
-            "data, model and declared noise agree".to_owned(),
-        ),
-    };
-    Screen::new(standing, verdict, what)
-}
-
 /// What the diagnosis of a record names, and on request what else that may be.
 fn causes(test: &EffectTest, alternatives: bool, screen: &mut Screen) {
     let each = test.causes.iter().take(NAMES_SHOWN);
@@ -157,22 +91,6 @@ fn causes(test: &EffectTest, alternatives: bool, screen: &mut Screen) {
         let others = test.causes.iter().flat_map(|one| &one.alternatives);
         screen.fact("may also be", few(others, NAMES_SHOWN));
     }
-}
-
-fn how_sure(report: &CalibrationReport) -> String {
-    let (Some(mean), Some([low, high])) = (report.nis_mean, report.nis_band) else {
-        return String::new();
-    };
-    let is_clean = |one: &EffectTest| one.causes.is_empty() && one.settled;
-    let tests = &report.effects;
-    let effects = match !tests.is_empty() && tests.iter().all(is_clean) {
-        true if tests.iter().all(|one| one.white == Some(true)) => {
-            "; no effect of the catalogue is significant, innovations white"
-        }
-        true => "; no effect of the catalogue is significant",
-        false => "",
-    };
-    format!("mean NIS {mean:.3} (expected {low:.3} to {high:.3}){effects}")
 }
 
 /// The effects that were given, if a filter can have all of them.
@@ -196,15 +114,6 @@ fn fitted(with: &FittedEffects) -> String {
         format!("{}: {}", one.effect, parameter_values(&parameters))
     });
     format!("{}; {:+.1} nats", joined(effects, "; "), with.gained_nats)
-}
-
-/// What the noise audits of the records found.
-fn noise_found(report: &CalibrationReport) -> Vec<&str> {
-    let all = report.effects.iter().flat_map(|test| &test.noise);
-    let mut ids: Vec<&str> = all.map(String::as_str).collect();
-    ids.sort_unstable();
-    ids.dedup();
-    ids
 }
 
 fn results(report: &CalibrationReport, screen: &mut Screen) {
