@@ -4,10 +4,12 @@ mod coloured;
 mod effort;
 mod gauges;
 pub(crate) mod hidden;
+mod offsets;
 mod oracle;
 mod second;
 mod unknown;
 
+pub(crate) use gauges::derived;
 use gyrocal_evaluation::Statistic;
 use gyrocal_plant::{FittedPlant, LoadedPlant, PlantError, PlantRecord, SearchOptions, diagnose};
 pub(crate) use gyrocal_truth::plant as simulated;
@@ -46,6 +48,7 @@ pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
     figures.extend(starts(context, &plants)?);
     figures.extend(unknown::figures(context, &plants)?);
     figures.extend(coloured::figures(context, &plants)?);
+    figures.extend(offsets::figures(context, &plants)?);
     figures.push(effort::lines()?);
     figures.push(effort::duration()?.timed(context.is_small()));
     figures.push(effort::interpreted(&plants[Kind::Duffing as usize])?);

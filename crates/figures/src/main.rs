@@ -28,6 +28,7 @@ mod naming;
 mod page;
 mod paper;
 mod plant_peers;
+mod real_plants;
 mod records;
 mod report;
 mod topics;

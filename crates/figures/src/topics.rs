@@ -9,7 +9,8 @@ use crate::harness::sources::{CALIBRATION, DIAGNOSIS, FILTER, INSTRUMENTS, PLANT
 use crate::harness::topic::{Part, Topic};
 use crate::{
     any_plant, calibration, catalogue, comparison, diagnosis_ground, dialects, embedded, field,
-    gain, generator, kernel, logs, measured, naming, paper, plant_peers, records, truth, watch,
+    gain, generator, kernel, logs, measured, naming, paper, plant_peers, real_plants, records,
+    truth, watch,
 };
 
 /// All topics.
@@ -257,6 +258,22 @@ pub(crate) const TOPICS: [Topic; 8] = [
                 ),
                 field::of_plants,
             ),
+            Part {
+                small: false,
+                ..part(
+                    "real",
+                    "Records of real plants: what is named, and the error on a later record.",
+                    of(
+                        PLANTS,
+                        &[
+                            "crates/figures/src/real_plants.rs",
+                            "tests/data/measured/quarter_drone",
+                            "tests/data/measured/buck_converter",
+                        ],
+                    ),
+                    real_plants::figures,
+                )
+            },
             Part {
                 small: false,
                 ..part(

@@ -1,6 +1,6 @@
 //! Gauges that are found and said, and weak excitation that is called none.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use gyrocal_plant::{FittedPlant, LoadedPlant, PlantRecord};
 use gyrocal_plant_codegen::{derive, settings_of_a_command};
@@ -72,9 +72,16 @@ pub(super) fn figure(plants: &[LoadedPlant]) -> Result<Figure, Error> {
 
 /// A plant that is derived from a script beside this file.
 pub(super) fn script(name: &str) -> Result<LoadedPlant, Error> {
-    let path = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/src/any_plant")).join(name);
-    let derived = derive(&path, settings_of_a_command())?;
-    Ok(LoadedPlant::parse(&derived.program, name)?)
+    derived(&PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/src/any_plant")).join(name))
+}
+
+/// A plant that is derived from a script.
+pub(crate) fn derived(path: &Path) -> Result<LoadedPlant, Error> {
+    let derived = derive(path, settings_of_a_command())?;
+    Ok(LoadedPlant::parse(
+        &derived.program,
+        &path.display().to_string(),
+    )?)
 }
 
 /// A record of rates of states, the last of which is read; the input is held at random values.

@@ -1,0 +1,97 @@
+//! Records of real plants: what is named, and the error on a later record.
+
+use std::path::Path;
+
+use gyrocal_answer::Answer;
+use gyrocal_plant::{ColumnMap, LoadedPlant, SearchOptions, diagnose};
+
+use crate::any_plant::derived;
+use crate::error::Error;
+use crate::figure::Figure;
+use crate::harness::Context;
+
+/// A plant with two records of it.
+struct Measured {
+    folder: &'static str,
+    name: &'static str,
+    /// Error of the later record that is asked for, in the unit of its output.
+    least: f64,
+}
+
+const ALL: [Measured; 2] = [
+    Measured {
+        folder: "quarter_drone",
+        name: "beam with a propeller",
+        least: 0.05,
+    },
+    Measured {
+        folder: "buck_converter",
+        name: "DC-DC converter",
+        least: 0.17,
+    },
+];
+
+/// All figures of the part.
+pub(crate) fn figures(_: &Context) -> Result<Vec<Figure>, Error> {
+    let each = ALL.iter().map(of_plant);
+    Ok(each.collect::<Result<Vec<_>, Error>>()?.concat())
+}
+
+fn of_plant(measured: &Measured) -> Result<Vec<Figure>, Error> {
+    let data = Path::new(concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../tests/data/measured"
+    ));
+    let file = |name: &str| data.join(measured.folder).join(name);
+    let plant = derived(&file("plant.py"))?;
+    let columns = ColumnMap::read(&file("columns.toml"))?;
+    let record = |name: &str| columns.record(plant.description(), &file(name));
+    let [first, later] = [record("record.csv")?, record("later.csv")?];
+    let options = SearchOptions::default();
+    let answer = diagnose(&plant, first, Some(later), &options)?.answer;
+    let name = measured.name;
+    let named: Vec<&str> = answer.findings.iter().map(|one| &*one.effect).collect();
+    let of_time = named.iter().filter(|id| is_of_time(&plant, id)).count();
+    let (nominal, extended, unit) = later_errors(&answer);
+    Ok(vec![
+        Figure::note(&format!("{name}: named"), named.join(", ")),
+        Figure::at_most(
+            &format!("{name}: functions of time named"),
+            0.0,
+            of_time as f64,
+            "",
+        ),
+        Figure::truth(
+            &format!("{name}: later record simulated better with what was found"),
+            extended < nominal,
+        ),
+        Figure::note(
+            &format!("{name}: error on the later record, nominal model"),
+            format!("{nominal:.4} {unit}"),
+        ),
+        Figure {
+            target: format!("<= {} {unit}", measured.least),
+            measured: format!("{extended:.4} {unit}"),
+            ..Figure::truth(
+                &format!("{name}: error on the later record, with what was found"),
+                extended <= measured.least,
+            )
+        },
+    ])
+}
+
+fn is_of_time(plant: &LoadedPlant, id: &str) -> bool {
+    let mut own = plant.description().effects.iter();
+    own.any(|own| own.id == id && own.kind.is_of_time())
+}
+
+/// Errors of the first output on the later record, and its unit; infinite where a simulation leaves the numbers.
+fn later_errors(answer: &Answer) -> (f64, f64, &str) {
+    let gain = answer.gain.as_ref();
+    let later = gain.and_then(|gain| gain.validation.as_ref());
+    let error = later.and_then(|later| later.open_loop.first());
+    let of = |error: Option<f64>| error.unwrap_or(f64::INFINITY);
+    error.map_or((f64::INFINITY, f64::INFINITY, ""), |error| {
+        (of(error.nominal), of(error.extended), &*error.unit)
+    })
+}
