@@ -217,6 +217,7 @@ mod tests {
         for (name, template) in [
             ("paper.md", crate::paper::TEMPLATE),
             ("measured-data.md", crate::measured::TEMPLATE),
+            ("real-plants.md", crate::real_plants::TEMPLATE),
             ("catalogue.md", crate::catalogue::TEMPLATE),
         ] {
             let page = std::fs::read_to_string(docs().join(name)).expect("the page is committed");

@@ -1,14 +1,17 @@
-//! Records of real plants: what is named, and the error on a later record.
+//! Records of real plants, and the page about them: what is named, and the error on a later record.
 
 use std::path::Path;
 
 use gyrocal_answer::Answer;
 use gyrocal_plant::{ColumnMap, LoadedPlant, SearchOptions, diagnose};
+use gyrocal_words::plant::{verdict, why};
 
 use crate::any_plant::derived;
 use crate::error::Error;
 use crate::figure::Figure;
 use crate::harness::Context;
+use crate::page;
+use crate::values::{Values, table};
 
 /// A plant with two records of it.
 struct Measured {
@@ -31,17 +34,27 @@ const ALL: [Measured; 2] = [
     },
 ];
 
-/// All figures of the part.
-pub(crate) fn figures(_: &Context) -> Result<Vec<Figure>, Error> {
-    let each = ALL.iter().map(of_plant);
-    Ok(each.collect::<Result<Vec<_>, Error>>()?.concat())
+/// Template of docs/real-plants.md.
+pub(crate) const TEMPLATE: &str = include_str!("real_plants/page.md");
+
+/// All figures of the part. The last compares the page with the measurement; with leave to write it is renewed
+/// instead.
+pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
+    let mut values = Values::default();
+    let mut figures = Vec::new();
+    for measured in &ALL {
+        figures.extend(of_plant(measured, &mut values)?);
+    }
+    let text = page::fill(TEMPLATE, &values)?;
+    let path = page::docs().join("real-plants.md");
+    let same = page::renewed(&path, &text, "plants --part real", context.write)?;
+    let name = "docs/real-plants.md is what is measured";
+    figures.push(Figure::truth(name, same));
+    Ok(figures)
 }
 
-fn of_plant(measured: &Measured) -> Result<Vec<Figure>, Error> {
-    let data = Path::new(concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/../../tests/data/measured"
-    ));
+fn of_plant(measured: &Measured, values: &mut Values) -> Result<Vec<Figure>, Error> {
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data/measured");
     let file = |name: &str| data.join(measured.folder).join(name);
     let plant = derived(&file("plant.py"))?;
     let columns = ColumnMap::read(&file("columns.toml"))?;
@@ -49,7 +62,9 @@ fn of_plant(measured: &Measured) -> Result<Vec<Figure>, Error> {
     let [first, later] = [record("record.csv")?, record("later.csv")?];
     let options = SearchOptions::default();
     let answer = diagnose(&plant, first, Some(later), &options)?.answer;
-    let name = measured.name;
+    let (name, folder) = (measured.name, measured.folder);
+    values.put(format!("{folder}_said"), format!("> {}", verdict(&answer)));
+    values.put(format!("{folder}_path"), path_table(&answer));
     let named: Vec<&str> = answer.findings.iter().map(|one| &*one.effect).collect();
     let of_time = named.iter().filter(|id| is_of_time(&plant, id)).count();
     let (nominal, extended, unit) = later_errors(&answer);
@@ -78,6 +93,28 @@ fn of_plant(measured: &Measured) -> Result<Vec<Figure>, Error> {
             )
         },
     ])
+}
+
+/// The way of the search, outputs one after the other.
+fn path_table(answer: &Answer) -> String {
+    let error = |error: Option<f64>, unit: &str| {
+        error.map_or_else(|| "∞".to_owned(), |error| format!("{error:.3} {unit}"))
+    };
+    let rows = answer.path.iter().flat_map(|step| {
+        let model = step.effect.as_ref();
+        let model = model.map_or_else(|| "nominal model".to_owned(), |id| format!("+ {id}"));
+        let model = model.replace('|', "\\|");
+        let stands = step.refused.map_or("stands", why);
+        step.outputs.iter().map(move |one| {
+            vec![
+                model.clone(),
+                error(one.left_out, &one.unit),
+                error(one.later, &one.unit),
+                stands.to_owned(),
+            ]
+        })
+    });
+    table(&["model", "left-out parts", "later record", ""], rows)
 }
 
 fn is_of_time(plant: &LoadedPlant, id: &str) -> bool {
