@@ -99,9 +99,7 @@ impl DiagnoseArguments {
         let later = with_role(InputRole::LaterRecord, &self.validate);
         let bench = with_role(InputRole::LaterBench, &self.validate_bench);
         let axes = with_role(InputRole::LaterGyroAxes, &self.validate_gyro_axes);
-        let mut all = self.given.inputs(later.chain(bench));
-        all.extend(axes);
-        all
+        self.given.inputs(later.chain(bench), axes)
     }
 }
 

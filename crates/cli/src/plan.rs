@@ -28,7 +28,7 @@ use options::{durations_s, goal, limit, limits, refuse_repeated, wished_sigma};
 /// the findings most, or the sigmas of the coefficients, and predicts the joint result of records
 /// and run. The records are diagnosed first unless a diagnosis is given. Of a strapdown unit
 /// (--gyro-axes) the next run is a log at rest in another attitude of the unit. Of several records of one
-/// platform the run follows the last.
+/// platform the run follows the last. With --gyro-axes attitudes are those of the unit.
 #[derive(Debug, Args)]
 pub(crate) struct PlanArguments {
     #[command(flatten)]
@@ -75,7 +75,7 @@ impl PlanArguments {
     /// The files that are read: each record with its bench file, then axes, in the order of the records.
     fn inputs(&self) -> Vec<(InputRole, &Path)> {
         let diagnosis = with_role(InputRole::Diagnosis, &self.diagnosis);
-        self.given.inputs(diagnosis)
+        self.given.inputs(None, diagnosis)
     }
 }
 

@@ -104,20 +104,18 @@ impl Given {
         self.records.iter().zip(self.benches.iter().cycle())
     }
 
-    /// The same one after the other, then `further` files, axes and map.
+    /// The same one after the other, then `between`, axes, `further` files and map.
     pub(crate) fn inputs<'a>(
         &'a self,
+        between: impl IntoIterator<Item = (InputRole, &'a Path)>,
         further: impl IntoIterator<Item = (InputRole, &'a Path)>,
     ) -> Vec<(InputRole, &'a Path)> {
         let pairs = self.pairs().flat_map(|(record, bench)| {
             [(InputRole::Record, &**record), (InputRole::Bench, &**bench)]
         });
         let axes = with_role(InputRole::GyroAxes, &self.gyro_axes);
-        pairs
-            .chain(further)
-            .chain(axes)
-            .chain(self.map.input())
-            .collect()
+        let all = pairs.chain(between).chain(axes).chain(further);
+        all.chain(self.map.input()).collect()
     }
 
     /// Reads each record with its bench file; refuses benches that contradict each other.

@@ -76,12 +76,15 @@ fn axes_with_next(plan: &PlanResult) -> String {
     if plan.attitude_of != AttitudeOf::Unit {
         return String::new();
     }
-    // Those inputs follow the pairs of record and bench.
     let count = plan.records.len().max(1);
-    let given = plan.manifest.inputs.get(2 * count..).unwrap_or_default();
+    let given = plan.manifest.inputs.iter();
+    let given = given.filter(|input| input.role == Some(InputRole::GyroAxes));
+    let given: Vec<String> = given.map(|input| shell_quoted(&input.path)).collect();
     let path = |place: usize| {
-        let input = given.get(place);
-        input.map_or("AXES.csv".to_owned(), |input| shell_quoted(&input.path))
+        given
+            .get(place)
+            .map_or("AXES.csv", String::as_str)
+            .to_owned()
     };
     let paths = (0..count).map(path).chain(["next.axes.csv".to_owned()]);
     paths.map(|path| format!(" --gyro-axes {path}")).collect()

@@ -14,19 +14,13 @@ pub(crate) fn calibration_verdict(fit: &FitStatistics, effects: &[EffectTest]) -
         Consistency::Underconfident => FitVerdict::TooSmall,
     };
     let any = |is: fn(&EffectTest) -> bool| effects.iter().any(is);
-    let is_settled = !any(|one| !one.settled);
+    let names = any(|one| !one.causes.is_empty());
     if fit.is_gross() {
         of_size
-    } else if any(|one| !one.causes.is_empty()) {
-        match effects
-            .iter()
-            .all(|one| one.causes.is_empty() || one.settled)
-        {
-            true => FitVerdict::EffectsFound,
-            false => FitVerdict::NotSettled,
-        }
-    } else if !is_settled {
+    } else if any(|one| !one.settled) {
         FitVerdict::NotSettled
+    } else if names {
+        FitVerdict::EffectsFound
     } else if any(|one| one.white == Some(false)) {
         FitVerdict::Unexplained
     } else if of_size == FitVerdict::Consistent && any(|one| !one.noise.is_empty()) {

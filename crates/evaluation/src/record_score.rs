@@ -14,7 +14,7 @@ pub const SAME_CLASS_COSINE: f64 = 0.9;
 pub struct RecordScore {
     /// Injected effects.
     pub hidden: Vec<InjectedScore>,
-    /// `clean`, `effects-found`, `unexplained` or `not-settled`.
+    /// `clean`, `effects-found`, `unexplained`, `not-settled` or `setup`.
     pub verdict: String,
     /// Findings of the diagnosis, strongest first.
     pub findings: Vec<FindingScore>,

@@ -190,15 +190,18 @@ fn a_log_of_a_strapdown_unit_is_planned() {
             "{written:?} {fresh:?}"
         );
     }
-    let short = folder.run(&[&OF_UNIT[..], &["--gyro-axes", "a.csv"]].concat());
-    let short = String::from_utf8(short.stdout).unwrap();
-    let short = short.replace("\\\n", " ");
-    let short = short.split_whitespace().collect::<Vec<_>>().join(" ");
-    for step in [
-        "gyrocal import strapdown LOG.csv --log-description LOG.toml --out next.csv",
-        "gyrocal calibrate r.csv next.csv --bench b.toml --bench next.toml --gyro-axes a.csv --gyro-axes next.axes.csv",
-    ] {
-        assert!(short.contains(step), "{step}\nis not in\n{short}");
+    // A diagnosis that is given does not change what comes next.
+    for given in [&[][..], &["--diagnosis", "d.json"]] {
+        let short = folder.run(&[&OF_UNIT[..], &["--gyro-axes", "a.csv"], given].concat());
+        let short = String::from_utf8(short.stdout).unwrap();
+        let short = short.replace("\\\n", " ");
+        let short = short.split_whitespace().collect::<Vec<_>>().join(" ");
+        for step in [
+            "gyrocal import strapdown LOG.csv --log-description LOG.toml --out next.csv",
+            "gyrocal calibrate r.csv next.csv --bench b.toml --bench next.toml --gyro-axes a.csv --gyro-axes next.axes.csv",
+        ] {
+            assert!(short.contains(step), "{step}\nis not in\n{short}");
+        }
     }
 }
 

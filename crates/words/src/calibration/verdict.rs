@@ -58,10 +58,15 @@ pub(super) fn heading(report: &CalibrationReport) -> (Standing, &'static str, St
             );
             return (Standing::Doubtful, "MISFIT", what);
         }
-        _ if report.effects.len() < report.records.len() => (
+        _ if report.effects.is_empty() => (
             Standing::Doubtful,
             "CALIBRATED",
             "innovations and declared noise agree; no diagnosis could be made",
+        ),
+        _ if report.effects.len() < report.records.len() => (
+            Standing::Doubtful,
+            "CALIBRATED",
+            "innovations and declared noise agree; not all records could be diagnosed",
         ),
         _ => (
             Standing::Good,
@@ -113,7 +118,8 @@ pub(super) fn how_sure(report: &CalibrationReport) -> String {
     };
     let is_clean = |one: &EffectTest| one.causes.is_empty() && one.settled;
     let tests = &report.effects;
-    let effects = match report.usable && !tests.is_empty() && tests.iter().all(is_clean) {
+    let all_tested = !tests.is_empty() && tests.len() == report.records.len();
+    let effects = match report.usable && all_tested && tests.iter().all(is_clean) {
         true if tests.iter().all(|one| one.white == Some(true)) => {
             "; no effect of the catalogue is significant, innovations white"
         }
@@ -144,31 +150,37 @@ fn of_record(test: &EffectTest, several: bool) -> Option<String> {
     };
     let p = test.residual_p_value;
     let p = p.map_or_else(String::new, |p| format!(" ({})", p_value(p)));
-    let open = match (test.settled, test.white) {
-        (_, Some(false)) => format!("innovations that are not white{p}"),
-        (false, _) => "no settled names".to_owned(),
+    let coloured = match test.white {
+        Some(false) => format!("innovations that are not white{p}"),
         _ => String::new(),
     };
-    let shown = joined(
-        causes.chain([noise, open]).filter(|one| !one.is_empty()),
-        ", ",
-    );
-    (!shown.is_empty()).then(|| format!("{name} shows {shown}"))
+    let shown = causes
+        .chain([noise, coloured])
+        .filter(|one| !one.is_empty());
+    let shown = joined(shown, ", ");
+    // A search that ended by itself is open where innovations are not white.
+    let is_cut = !test.settled && test.white != Some(false);
+    Some(match (shown.is_empty(), is_cut) {
+        (true, false) => return None,
+        (true, true) => format!("the search of {name} ended at its budget of work"),
+        (false, false) => format!("{name} shows {shown}"),
+        (false, true) => format!("{name} shows {shown}; its search ended at its budget of work"),
+    })
 }
 
 /// What to look at where the innovations are too large.
 fn advice(report: &CalibrationReport) -> Option<String> {
+    const INPUTS: &str = "check the units of [noise] and time, that up is positive, and the latitude and initial angles \
+                          of the bench file";
     let names = report.records.iter().map(|one| printable_line(&one.record));
     Some(match (report.usable, report.verdict) {
         (_, FitVerdict::Setup) => return None,
         (false, _) if has_several(report) => format!(
-            "if these are records of several platforms, calibrate {} one by one. If only their turn-ons differ, \
-             declare `turn_on_sigma_deg_per_h` in [prior]",
+            "{INPUTS}. If these are records of several platforms, calibrate {} one by one. If only their turn-ons \
+             differ, declare `turn_on_sigma_deg_per_h` in [prior]",
             joined(names, ", ")
         ),
-        (false, _) => "check the units of [noise] and time, that up is positive, and the latitude and \
-                       initial angles of the bench file"
-            .to_owned(),
+        (false, _) => INPUTS.to_owned(),
         (true, FitVerdict::TooLarge) if report.method != CalibrationMethod::Batch => {
             "the model is incomplete, the noise is larger than declared, or the prior is too wide for a filter \
              of one pass"
