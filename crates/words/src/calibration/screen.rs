@@ -34,7 +34,7 @@ pub fn calibration_screen(report: &CalibrationReport) -> Screen {
         // Whoever gives an effect has chosen among them.
         causes(test, report.with_effects.is_none(), &mut screen);
     }
-    screen.fact("how sure", how_sure(report));
+    screen.fact("how sure", how_sure(report, ""));
     if let Some(with) = &report.with_effects {
         screen.fact("with it", fitted(with));
     }

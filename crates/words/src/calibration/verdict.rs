@@ -103,7 +103,7 @@ pub fn calibration_verdict(report: &CalibrationReport) -> String {
             "the record {name} could not be diagnosed: it may show effects that the model lacks"
         )
     });
-    let size = how_sure(report);
+    let size = how_sure(report, ", the 99.9 % band");
     let clauses = core::iter::once(what).chain(tests).chain(untested);
     let clauses = clauses.chain([size]).chain(advice(report));
     let sentences = clauses.filter(|one| !one.is_empty());
@@ -111,8 +111,9 @@ pub fn calibration_verdict(report: &CalibrationReport) -> String {
     sentences.collect::<Vec<_>>().join(" ")
 }
 
-/// How sure the verdict is: the size of the innovations, and what the diagnoses say where all agree.
-pub(super) fn how_sure(report: &CalibrationReport) -> String {
+/// How sure the verdict is: the size of the innovations, with what stands behind its band, and what the diagnoses say
+/// where all agree.
+pub(super) fn how_sure(report: &CalibrationReport, of_band: &str) -> String {
     let (Some(mean), Some([low, high])) = (report.nis_mean, report.nis_band) else {
         return String::new();
     };
@@ -126,7 +127,7 @@ pub(super) fn how_sure(report: &CalibrationReport) -> String {
         true => "; no effect of the catalogue is significant",
         false => "",
     };
-    format!("mean NIS {mean:.3} (expected {low:.3} to {high:.3}){effects}")
+    format!("mean NIS {mean:.3} (expected {low:.3} to {high:.3}{of_band}){effects}")
 }
 
 /// What the diagnosis of a record says where it is not clean.
