@@ -319,7 +319,7 @@ mod parquet {
         let refused = words(typed("column = \"gap_s\"", EXACT).unwrap_err());
         for part in [
             "no value in the column `gap_s` of row 6",
-            "a time in every row",
+            "a time in numbers in every row",
         ] {
             assert!(refused.contains(part), "{refused} lacks {part}");
         }
