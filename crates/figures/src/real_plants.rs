@@ -17,6 +17,8 @@ use crate::values::{Values, table};
 struct Measured {
     folder: &'static str,
     name: &'static str,
+    /// What is named; the sentences of the page beside its tables are about these.
+    named: &'static [&'static str],
     /// Error of the later record that is asked for, in the unit of its output.
     least: f64,
 }
@@ -25,11 +27,13 @@ const ALL: [Measured; 2] = [
     Measured {
         folder: "quarter_drone",
         name: "beam with a propeller",
+        named: &["v_rate.u|u|", "v_rate.sign(v)", "v_rate.above(x)"],
         least: 0.05,
     },
     Measured {
         folder: "buck_converter",
         name: "DC-DC converter",
+        named: &["v_rate.v u", "v_rate.v |x|"],
         least: 0.17,
     },
 ];
@@ -69,7 +73,11 @@ fn of_plant(measured: &Measured, values: &mut Values) -> Result<Vec<Figure>, Err
     let of_time = named.iter().filter(|id| is_of_time(&plant, id)).count();
     let (nominal, extended, unit) = later_errors(&answer);
     Ok(vec![
-        Figure::note(&format!("{name}: named"), named.join(", ")),
+        Figure {
+            target: "as the page says".to_owned(),
+            measured: named.join(", "),
+            ..Figure::truth(&format!("{name}: named"), named == measured.named)
+        },
         Figure::at_most(
             &format!("{name}: functions of time named"),
             0.0,

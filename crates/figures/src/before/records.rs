@@ -24,6 +24,7 @@ use crate::error::Error;
 /// - `broken SEED`: `record.csv` and `bench.toml`, one of them spoilt in a way of [`BREAKAGES`], in turn;
 /// - `unit SEED ROWS RAMP`: `record.csv`, `axes.csv` and `bench.toml` of a strapdown unit, a row in five minutes,
 ///   with a ramp of gyro y, deg/h/day;
+/// - `white SEED ROWS`: `rate.csv`, a column of white noise of unit size;
 /// - any other line: what the command `gyrocal` writes.
 pub(crate) fn make(line: &str, folder: &Path) -> Result<(), Error> {
     let words: Vec<&str> = line.split(' ').collect();
@@ -67,6 +68,14 @@ pub(crate) fn make(line: &str, folder: &Path) -> Result<(), Error> {
                 accel_error: &|_, _| [0.0; 3],
             };
             Ok(unit.simulate().write(folder)?)
+        }
+        ["white", seed, rows] => {
+            /// Purpose of the stream of noise.
+            const WHITE: u64 = 72;
+            let (mut draw, rows) = (Draw::new(seed.parse()?, WHITE), rows.parse()?);
+            let rows = (0..rows).map(|_: usize| format!("{}\n", draw.normal()));
+            let text = format!("rate\n{}", rows.collect::<String>());
+            Ok(std::fs::write(folder.join("rate.csv"), text)?)
         }
         _ => match ran(line, folder)? {
             (0, _) => Ok(()),

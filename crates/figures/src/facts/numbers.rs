@@ -51,7 +51,7 @@ struct Part {
 }
 
 /// Answers whose pages the facts do not have, each by what makes its files and its command.
-const FURTHER: [(&[&str], &str); 6] = [
+const FURTHER: [(&[&str], &str); 7] = [
     (
         &["platform record 1 0 48 30"],
         "report %record.csv --bench %record.toml --uncertainty --out %page.html",
@@ -71,6 +71,10 @@ const FURTHER: [(&[&str], &str); 6] = [
     (
         &["platform 1 5 0 36 30", "platform 2 5 1 36 30"],
         "plan %1.csv %2.csv --bench %1.toml --bench %2.toml --report %page.html",
+    ),
+    (
+        &["white 1 20000"],
+        "allan %rate.csv --columns rate --rate-hz 10 --unit deg/h --report %page.html",
     ),
     (
         &[],
