@@ -1,5 +1,6 @@
 //! Size of a record, and the noise audit of its accelerometers.
 
+use gyrocal_record::AveragedReport;
 use serde::{Deserialize, Serialize};
 
 /// Size of a record.
@@ -12,6 +13,9 @@ pub struct RecordSummary {
     pub duration_s: f64,
     /// Missing rows and values.
     pub gaps: Gaps,
+    /// Means of blocks that were diagnosed in the place of rows that come faster than anything moves.
+    #[serde(default)]
+    pub averaged: Option<AveragedReport>,
 }
 
 /// Missing rows and values.

@@ -104,6 +104,19 @@ pub fn average_record(
     record: &Record,
     interval_s: f64,
 ) -> Result<AveragedRecord, CalibrationError> {
+    average_between(record, interval_s, &[])
+}
+
+/// The same where no mean reaches over the beginning of one of some rows, which are in ascending order: of a record that
+/// jumps there.
+///
+/// # Errors
+/// As [`average_record`].
+pub fn average_between(
+    record: &Record,
+    interval_s: f64,
+    jumps: &[usize],
+) -> Result<AveragedRecord, CalibrationError> {
     check_lengths(record)?;
     let least_s = 2.0 * median_step_s(record);
     // Written so that NaN is refused.
@@ -114,7 +127,7 @@ pub fn average_record(
             most_s: LONGEST_INTERVAL_S,
         });
     }
-    let groups = groups(record, interval_s);
+    let groups = groups(record, interval_s, jumps);
     let mut means: Vec<Mean> = groups
         .iter()
         .filter_map(|rows| Mean::of(record, rows))
@@ -134,14 +147,15 @@ fn median_step_s(record: &Record) -> f64 {
     }
 }
 
-/// Rows of each interval that has any.
-fn groups(record: &Record, interval_s: f64) -> Vec<Range<usize>> {
+/// Rows of each interval that has any, and of its parts between jumps.
+fn groups(record: &Record, interval_s: f64, jumps: &[usize]) -> Vec<Range<usize>> {
     let first_s = record.time_s.first().copied().unwrap_or(0.0);
     let interval = |row: usize| ((record.time_s[row] - first_s) / interval_s + ON_BOUNDARY).floor();
     let mut groups = Vec::new();
     let mut start = 0;
     for row in 1..=record.len() {
-        if row == record.len() || interval(row) > interval(start) {
+        let jumps = jumps.binary_search(&row).is_ok();
+        if row == record.len() || jumps || interval(row) > interval(start) {
             groups.push(start..row);
             start = row;
         }

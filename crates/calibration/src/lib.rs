@@ -137,7 +137,7 @@ mod unit_start;
 mod variances;
 mod work;
 
-pub use averaging::{AveragedRecord, attitude_walk_share, average_record};
+pub use averaging::{AveragedRecord, attitude_walk_share, average_between, average_record};
 pub use budget::{
     CoefficientBudget, Contribution, ModelEstimate, UncertaintyBudget, calibrate_with_budget,
 };

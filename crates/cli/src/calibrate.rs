@@ -88,6 +88,13 @@ impl CalibrateArguments {
         }
     }
 
+    /// Whether rows that come faster than anything moves are averaged: filters read rows, `--robust` bounds the
+    /// influence of each.
+    fn takes_blocks(&self) -> bool {
+        let is_batch = self.method() == CalibrationMethod::Batch;
+        is_batch && self.robust.is_none() && self.given.gyro_axes.is_empty()
+    }
+
     fn options(&self) -> Options {
         let options = match self.method() {
             CalibrationMethod::Streaming => Options::streaming(),

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use gyrocal::generated::MODEL_HASH;
 use gyrocal_answer::{Answer, Verdict};
-use gyrocal_calibration::{CalibrationError, Run};
+use gyrocal_calibration::CalibrationError;
 use gyrocal_diagnosis::{
     DiagnoseOptions, Diagnosis, DiagnosisError, FILTER_EFFECT, Gate, TestedFilter, diagnose_watched,
 };
@@ -141,14 +141,10 @@ pub(crate) fn run(arguments: &DiagnoseArguments) -> Result<Reply, Failure> {
     diagnosis.result.manifest = manifest_of(MODEL_HASH, options.seed, &inputs)?;
     if let Some((path, later, later_bench)) = &later {
         let failed = |source| NotDiagnosed::new(path, later_bench, source);
-        let first = Run {
-            record: file.record(),
-            bench: &bench,
-        };
         let axes = arguments.validate_gyro_axes.as_slice();
         let axes = gyro_axes::read(axes, [later.record()])?.pop();
         let checked = gate(later, later_bench)?.with_gyro_axes(axes);
-        match diagnosis.validate_gated(&first, checked, later_bench, &options) {
+        match diagnosis.validate_gated(checked, later_bench, &options) {
             Err(DiagnosisError::Setup { result }) => {
                 drop(progress);
                 return stopped(arguments, *result, &inputs);
@@ -158,7 +154,7 @@ pub(crate) fn run(arguments: &DiagnoseArguments) -> Result<Reply, Failure> {
     }
     drop(progress);
     tracing::info!(verdict = ?diagnosis.result.verdict, "diagnosed");
-    answer(arguments, record, &bench, &diagnosis)
+    answer(arguments, record, &diagnosis)
 }
 
 /// The files that are read. Arguments that contradict each other are refused before that.
@@ -210,13 +206,12 @@ fn stopped(
 fn answer(
     arguments: &DiagnoseArguments,
     record: &Path,
-    bench: &Bench,
     diagnosis: &Diagnosis<'_>,
 ) -> Result<Reply, Failure> {
     let result = &diagnosis.result;
     let mut answer = Reply::of_answer(result);
     if arguments.views.are_asked() {
-        let part = page::part(record, of_diagnosis(diagnosis, bench))?;
+        let part = page::part(record, of_diagnosis(diagnosis))?;
         arguments.views.stage(record, part, &mut answer)?;
     }
     finished(arguments, result, answer)

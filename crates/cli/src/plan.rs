@@ -105,16 +105,14 @@ pub(crate) fn run(arguments: &PlanArguments) -> Result<Reply, Failure> {
     let mut progress = Progress::waiting("planning", rows);
     let known = found::known(arguments, &files, &benches, &mut progress)?;
     progress.stage("comparing runs", DIAGNOSED);
-    // The next run follows the last record on its bench.
-    let bench = &benches[benches.len() - 1];
     let run = Run {
         record: &known.record,
-        bench,
+        bench: &known.bench,
     };
     tracing::info!(named = known.named.len(), "known");
     let options = PlanOptions {
         durations_s: durations_s(&arguments.hours),
-        limits: limits(&arguments.limits, bench),
+        limits: limits(&arguments.limits, &known.bench),
         aim: arguments.aim.map(|aim| match aim {
             AimArgument::Set => Aim::Set,
             AimArgument::Sigmas => Aim::Sigmas,
@@ -125,6 +123,7 @@ pub(crate) fn run(arguments: &PlanArguments) -> Result<Reply, Failure> {
     let mut planned = plan(&known.fitted, &run, &known.named, &options)
         .map_err(|source| NotPlanned::new(&arguments.given.records, source))?;
     drop(progress);
+    planned.record = known.summary;
     planned.setup.clone_from(&known.setup);
     planned.manifest = manifest_of(MODEL_HASH, options.seed, &read)?;
     let part = of_plan(&planned);

@@ -175,7 +175,7 @@ fn of_record(
             };
             let budget = arguments.uncertainty.then(of).transpose();
             let budget = budget.map_err(|source| NotDiagnosed::new(path, &bench, source))?;
-            let part = page::part(path, of_diagnosis(&diagnosis, &bench))?;
+            let part = page::part(path, of_diagnosis(&diagnosis))?;
             Ok((part, budget))
         }
     }

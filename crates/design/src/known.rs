@@ -2,12 +2,13 @@
 
 use std::borrow::Cow;
 
-use gyrocal_answer::Answer;
-use gyrocal_calibration::{FittedPlatform, Options, Run};
+use gyrocal_answer::{Answer, RecordSummary};
+use gyrocal_calibration::{CalibrationError, FittedPlatform, Options, Run};
 use gyrocal_diagnosis::{
-    DiagnoseOptions, Diagnosis, DiagnosisError, RecordToDiagnose, problems_of,
+    Blocks, DiagnoseOptions, Diagnosis, DiagnosisError, RecordToDiagnose, problems_of,
+    record_summary, records_summary,
 };
-use gyrocal_record::{Record, SetupProblem};
+use gyrocal_record::{Bench, Record, SetupProblem};
 
 use crate::error::DesignError;
 use crate::named_cause::{NamedCause, fitted_to_records, noise_of};
@@ -16,6 +17,10 @@ use crate::named_cause::{NamedCause, fitted_to_records, noise_of};
 pub struct Known<'a> {
     /// The record without what gross errors of the set-up spoilt; several are one.
     pub record: Cow<'a, Record>,
+    /// Its bench description; that of the last of several, which the next run follows.
+    pub bench: Cow<'a, Bench>,
+    /// Its size as it was given.
+    pub summary: RecordSummary,
     /// Gross errors that were mended.
     pub setup: Vec<SetupProblem>,
     /// The model with what was found.
@@ -41,6 +46,8 @@ impl<'a> From<Diagnosis<'a>> for Known<'a> {
             named: NamedCause::all(&found.result),
             fitted: found.extended.unwrap_or(found.nominal),
             record: found.record,
+            bench: found.bench,
+            summary: found.result.record,
             setup: found.result.setup,
         }
     }
@@ -59,6 +66,7 @@ impl<'a> Known<'a> {
         let options = Options::default();
         let is_one = checked.len() == 1;
         let (mut setup, mut axes, mut sound) = (Vec::new(), Vec::new(), Vec::new());
+        let mut summaries = Vec::new();
         for RecordToDiagnose { name, gate, bench } in checked {
             let of_record = |source| match is_one {
                 true => source,
@@ -74,6 +82,11 @@ impl<'a> Known<'a> {
                 true => problems,
                 false => problems_of(&name, problems),
             });
+            summaries.push(record_summary(&record));
+            let (record, bench, averaged) = Blocks::or_rows(record, bench, axes.last());
+            if let (Some(of), Some(last)) = (averaged, summaries.last_mut()) {
+                last.averaged = Some(of);
+            }
             sound.push((record, bench));
         }
         let runs = sound.iter();
@@ -89,9 +102,17 @@ impl<'a> Known<'a> {
                 (fitted, Some(joint))
             }
         };
-        let own = sound.pop().map(|(record, _)| record);
+        let summary = match &summaries[..] {
+            [one] => *one,
+            all => records_summary(all),
+        };
+        let Some((own, bench)) = sound.pop() else {
+            return Err(DesignError::from(CalibrationError::NoRecords).into());
+        };
         Ok(Self {
-            record: joint.map(Cow::Owned).or(own).unwrap_or_default(),
+            record: joint.map_or(own, Cow::Owned),
+            bench,
+            summary,
             setup,
             fitted,
             named,

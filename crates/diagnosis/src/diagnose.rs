@@ -18,13 +18,14 @@ mod untestable_rows;
 use std::borrow::Cow;
 
 use gyrocal_calibration::{CalibrationError, FittedPlatform, GyroAxes, NoiseModel, Run, work};
-use gyrocal_hypothesis::{ScoreTable, SearchOptions, Searched, Selection};
+use gyrocal_hypothesis::{ScoreTable, Searched};
 use gyrocal_record::{Bench, Record, SetupProblem};
 use gyrocal_setup::PlatformKind;
 use gyrocal_statistics::allan_test;
 
+use crate::blocks::Blocks;
 use crate::error::DiagnosisError;
-use crate::error_budget::{RESIDUAL_TESTS, shares};
+use crate::error_budget::shares;
 use crate::filter_test::filter_test;
 use crate::gate::Gate;
 use crate::magnitude_test::{MagnitudeTest, magnitude_test};
@@ -40,11 +41,12 @@ use answer::Evidence;
 pub use answer::{manifest, record_summary};
 pub use given::fit_effects;
 use gyro_noise::{gyro_noise_findings, over_declared};
-use gyrocal_answer::{Answer, FalseAlarmShares, Gain};
+use gyrocal_answer::{Answer, FalseAlarmShares, Gain, RecordSummary};
 pub use later::predict_later;
 use noise_audited_fit::{AuditedFit, noise_audited_fit};
 pub(crate) use of_calibration::diagnose_calibrated;
 pub use options::DiagnoseOptions;
+use options::{search_options, selection};
 pub use records::{
     RecordToDiagnose, RecordsDiagnosis, diagnose_records, diagnose_together, problems_of,
     records_summary,
@@ -60,8 +62,11 @@ const MOST_CAUSES: usize = 2;
 pub struct Diagnosis<'a> {
     /// The answer.
     pub result: Answer,
-    /// The record that was diagnosed: without what gross errors of the set-up spoilt.
+    /// The record that was diagnosed: without what gross errors of the set-up spoilt, and as means of
+    /// [`Blocks`] where its rows come faster than anything moves.
     pub record: Cow<'a, Record>,
+    /// Its bench description, with the noise of one of these rows; of several records that of the last.
+    pub bench: Cow<'a, Bench>,
     /// The nominal model at its best fit.
     pub nominal: FittedPlatform<'a>,
     /// The model with all accepted causes, if there are any.
@@ -86,6 +91,7 @@ impl Diagnosis<'_> {
         Diagnosis {
             result: self.result,
             record: Cow::Owned(self.record.into_owned()),
+            bench: Cow::Owned(self.bench.into_owned()),
             nominal: self.nominal.into_owned(),
             extended: self.extended.map(FittedPlatform::into_owned),
             noise_model: self.noise_model,
@@ -163,8 +169,34 @@ struct Sound<'e, 'a> {
 }
 
 /// Diagnoses a record without gross errors; `setup` are those that it had, `axes` those of the instruments
-/// of a strapdown unit.
+/// of a strapdown unit. Rows that come faster than anything moves are diagnosed as means of blocks, unless a filter is
+/// tested, which reads rows.
 fn diagnose_sound<'a>(
+    record: &'a Record,
+    bench: &'a Bench,
+    axes: Option<&GyroAxes>,
+    options: &DiagnoseOptions,
+    setup: Vec<SetupProblem>,
+    watch: &mut dyn FnMut(Stage),
+) -> Result<Diagnosis<'a>, DiagnosisError> {
+    let blocks = Blocks::of(&Run { record, bench }, axes).filter(|_| options.filter.is_none());
+    if let Some(blocks) = blocks {
+        let Run {
+            record: means,
+            bench,
+        } = blocks.run();
+        let mut found = diagnose_rows(means, bench, None, options, setup, watch)?;
+        found.result.record = RecordSummary {
+            averaged: Some(blocks.report),
+            ..record_summary(record)
+        };
+        return Ok(found.into_owned());
+    }
+    diagnose_rows(record, bench, axes, options, setup, watch)
+}
+
+/// The same of the rows as they are.
+fn diagnose_rows<'a>(
     record: &'a Record,
     bench: &'a Bench,
     axes: Option<&GyroAxes>,
@@ -307,6 +339,7 @@ fn concluded<'e, 'a: 'e>(
     Ok(Diagnosis {
         result,
         record: Cow::Borrowed(record),
+        bench: Cow::Borrowed(bench),
         nominal,
         extended: validated.extended,
         noise_model,
@@ -316,27 +349,6 @@ fn concluded<'e, 'a: 'e>(
         scores: searched.scores,
         later: None,
     })
-}
-
-fn selection(record: &Record, bench: &Bench, options: &DiagnoseOptions) -> Selection {
-    let also: Vec<&str> = options.also.iter().map(String::as_str).collect();
-    request::selection(record, bench, &also)
-}
-
-/// Options of a search on a record that so much work was done on before.
-fn search_options(
-    options: &DiagnoseOptions,
-    shares: &FalseAlarmShares,
-    work_before: u64,
-) -> SearchOptions {
-    SearchOptions {
-        false_alarm_probability: shares.search,
-        walk_probability: shares.random_walk,
-        unmodelled_probability: shares.residual_test / RESIDUAL_TESTS,
-        seed: options.seed,
-        work_before,
-        names_alone: false,
-    }
 }
 
 /// Suspected outliers that no cause explains.

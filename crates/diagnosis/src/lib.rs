@@ -70,6 +70,7 @@
 //! It reads no records and prints nothing; [`gyrocal_answer::read`] reads a written answer. It tests effects
 //! of the catalogue, sinusoids and functions of specific force, on a static base only.
 
+mod blocks;
 mod calibration_report;
 mod calibration_verdict;
 mod diagnose;
@@ -96,6 +97,7 @@ mod untested;
 mod validation;
 mod watch;
 
+pub use blocks::Blocks;
 pub use calibration_report::{
     CalibratedRecord, CalibrationRequest, CalibrationStep, calibrate_and_diagnose,
 };

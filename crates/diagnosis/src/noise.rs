@@ -9,7 +9,7 @@ mod audit;
 mod block;
 mod decision;
 mod finding;
-mod lattice;
+pub(crate) mod lattice;
 mod likelihood;
 mod open_loop;
 mod outlier;

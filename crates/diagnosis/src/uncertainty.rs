@@ -241,7 +241,10 @@ pub fn record_uncertainty(
             let models: Vec<ModelEstimate> = members.iter().map(estimate).collect();
             extended.uncertainty_budget()?.over_models(&models)
         }
-        None => calibrate_with_budget(&[Run { record, bench }], options)?.1,
+        None => {
+            let bench: &Bench = &diagnosis.bench;
+            calibrate_with_budget(&[Run { record, bench }], options)?.1
+        }
     };
     let found = RecordUncertainty {
         name: name.to_owned(),

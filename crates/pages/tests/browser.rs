@@ -21,7 +21,7 @@ fn part(name: &str, change: impl FnOnce(&mut Record)) -> Part {
     change(&mut record);
     let bench = Bench::read(&data.join(format!("{name}.bench.toml"))).unwrap();
     let diagnosis = diagnose(&record, &bench, &DiagnoseOptions::default()).unwrap();
-    of_diagnosis(&diagnosis, &bench).unwrap()
+    of_diagnosis(&diagnosis).unwrap()
 }
 
 fn written(folder: &TempDir, name: &str, parts: Vec<Part>) -> PathBuf {

@@ -97,6 +97,7 @@ pub(crate) fn answer(
 /// Size of a record.
 pub(crate) fn summary(record: &PlantRecord) -> RecordSummary {
     RecordSummary {
+        averaged: None,
         rows: record.len(),
         duration_s: record.duration_s(),
         gaps: Gaps::default(),

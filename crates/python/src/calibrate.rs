@@ -3,10 +3,10 @@
 use std::borrow::Cow;
 
 use gyrocal::generated::MODEL_HASH;
-use gyrocal_calibration::{GyroAxes, Options, Run, average_record, shared_rows};
+use gyrocal_calibration::{GyroAxes, Options, Run, shared_rows};
 use gyrocal_cli::NotCalibrated;
 use gyrocal_diagnosis::{
-    CalibratedRecord, CalibrationRequest, DiagnoseOptions, Gate, calibrate_and_diagnose,
+    Blocks, CalibratedRecord, CalibrationRequest, DiagnoseOptions, Gate, calibrate_and_diagnose,
     fit_effects,
 };
 use gyrocal_record::{
@@ -33,6 +33,12 @@ struct Request {
 }
 
 impl Request {
+    /// Whether rows that come faster than anything moves are averaged: filters read rows, and the bound on outliers
+    /// is that of each.
+    fn takes_blocks(&self) -> bool {
+        self.method == CalibrationMethod::Batch && self.robust_sigmas.is_none()
+    }
+
     fn options(&self) -> Options {
         let options = match self.method {
             CalibrationMethod::Streaming => Options::streaming(),
@@ -187,19 +193,29 @@ impl<'a> Sound<'a> {
         }
     }
 
-    /// Takes means over intervals.
-    fn average(self, interval_s: f64) -> Outcome<Self> {
-        let means = average_record(&self.record, interval_s).map_err(|error| Failure {
-            message: format!("{}: {error}", self.given.record.input.path),
-            advice: Some("choose average_s between these, or leave it out".to_owned()),
-            ..Failure::default()
-        })?;
-        let bench = means.bench(&self.bench);
-        Ok(Self {
-            averaged: Some(means.report(&bench, interval_s)),
-            bench: Cow::Owned(bench),
-            record: Cow::Owned(means.record),
-            ..self
+    /// Takes means in the place of rows: over intervals that are asked for, or of blocks where rows come faster than
+    /// anything moves.
+    fn averaged(self, request: &Request) -> Outcome<Self> {
+        let blocks =
+            match request.average_s {
+                Some(interval_s) => Some(Blocks::every(&self.run(), interval_s).map_err(
+                    |error| Failure {
+                        message: format!("{}: {error}", self.given.record.input.path),
+                        advice: Some("choose average_s between these, or leave it out".to_owned()),
+                        ..Failure::default()
+                    },
+                )?),
+                None => Blocks::of(&self.run(), None)
+                    .filter(|_| request.takes_blocks() && self.given.axes.is_none()),
+            };
+        Ok(match blocks {
+            Some(blocks) => Self {
+                averaged: Some(blocks.report),
+                bench: Cow::Owned(blocks.bench),
+                record: Cow::Owned(blocks.record),
+                ..self
+            },
+            None => self,
         })
     }
 }
@@ -239,13 +255,8 @@ fn sound<'a>(
         });
     }
     refuse_shared_rows(&sound)?;
-    match request.average_s {
-        Some(interval_s) => sound
-            .into_iter()
-            .map(|one| one.average(interval_s))
-            .collect(),
-        None => Ok(sound),
-    }
+    let sound = sound.into_iter();
+    sound.map(|one| one.averaged(request)).collect()
 }
 
 /// Refuses benches with different priors, as the coefficients are shared, and with different

@@ -2,7 +2,7 @@
 
 use gyrocal::generated::MODEL_HASH;
 use gyrocal_answer::Answer;
-use gyrocal_calibration::{CalibrationError, Run};
+use gyrocal_calibration::CalibrationError;
 use gyrocal_cli::NotDiagnosed;
 use gyrocal_diagnosis::{
     DiagnoseOptions, Diagnosis, DiagnosisError, FILTER_EFFECT, Gate, TestedFilter, diagnose_gated,
@@ -27,13 +27,6 @@ pub(crate) struct Given<'a> {
 }
 
 impl<'a> Given<'a> {
-    pub(crate) fn run(&self) -> Run<'a> {
-        Run {
-            record: self.record.file.record(),
-            bench: &self.bench.bench,
-        }
-    }
-
     /// The check of the set-up.
     pub(crate) fn gate(&self, options: &DiagnoseOptions) -> Outcome<Gate<'a>> {
         let kind = match self.axes {
@@ -171,7 +164,7 @@ fn result(
         found => found.map_err(|source| given.no_diagnosis(source))?,
     };
     if let Some((later, gate)) = later {
-        match diagnosis.validate_gated(&given.run(), gate, &later.bench.bench, options) {
+        match diagnosis.validate_gated(gate, &later.bench.bench, options) {
             Err(DiagnosisError::Setup { result }) => return Ok((*result, None)),
             validated => validated.map_err(|source| later.no_diagnosis(source))?,
         }

@@ -75,11 +75,12 @@ fn answer(given: Given<'_>, request: &Request, command: &str) -> Outcome<String>
     };
     let run = Run {
         record: &known.record,
-        bench: &given.bench.bench,
+        bench: &known.bench,
     };
     let options = &request.options;
     let mut planned = design(&known.fitted, &run, &known.named, options)
         .map_err(|source| no_plan(given, source))?;
+    planned.record = known.summary;
     planned.setup.clone_from(&known.setup);
     let mut inputs = vec![
         given.record.input.clone().with_role(InputRole::Record),

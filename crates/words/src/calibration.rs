@@ -6,8 +6,8 @@ mod verdict;
 
 use gyrocal_document::{List, Words};
 use gyrocal_record::{
-    AXES, AzimuthReport, CalibrationMethod, CalibrationReport, NoiseDifference, NoiseEstimate,
-    NoiseRatio, RecordReport, RunReport, SiteReport, printable_line,
+    AXES, AveragedReport, AzimuthReport, CalibrationMethod, CalibrationReport, NoiseDifference,
+    NoiseEstimate, NoiseRatio, RecordReport, RunReport, SiteReport, printable_line,
 };
 use gyrocal_statistics::format;
 
@@ -57,11 +57,17 @@ fn record_line(one: &RecordReport) -> String {
         one.rows,
         one.duration_s / 86_400.0
     );
-    let Some(averaged) = one.averaged else {
-        return text;
-    };
-    text += &format!(
-        ", averaged over {} s to {} means of {:.3} times the noise",
+    if let Some(averaged) = &one.averaged {
+        text += &format!(", {}", means(averaged));
+    }
+    text
+}
+
+/// The means that are used in the place of the rows of a record.
+#[must_use]
+pub(crate) fn means(averaged: &AveragedReport) -> String {
+    let mut text = format!(
+        "averaged over {} s to {} means of {:.3} times the noise",
         averaged.interval_s, averaged.means, averaged.noise_ratio
     );
     if averaged.left_out > 0 {

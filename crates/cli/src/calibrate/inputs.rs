@@ -3,8 +3,8 @@
 use std::borrow::Cow;
 use std::path::PathBuf;
 
-use gyrocal_calibration::{Options, Run, average_record};
-use gyrocal_diagnosis::{CalibratedRecord, Gate};
+use gyrocal_calibration::{Options, Run};
+use gyrocal_diagnosis::{Blocks, CalibratedRecord, Gate};
 use gyrocal_record::{AveragedReport, Bench, Record, SetupProblem, printable_path};
 use miette::miette;
 
@@ -75,12 +75,11 @@ pub(super) fn read(arguments: &CalibrateArguments) -> Result<Vec<Measurement>, F
         .map(|one| (&*one.path, &one.record))
         .collect();
     refuse_shared_rows(&named)?;
-    if let Some(interval_s) = arguments.average
-        && !measurements.iter().any(|measurement| measurement.stops)
-    {
-        for measurement in &mut measurements {
-            take_means(measurement, interval_s)?;
-        }
+    if measurements.iter().any(|measurement| measurement.stops) {
+        return Ok(measurements);
+    }
+    for measurement in &mut measurements {
+        take_means(measurement, arguments)?;
     }
     Ok(measurements)
 }
@@ -102,17 +101,27 @@ fn refuse_twins(records: &[PathBuf]) -> Result<(), Failure> {
     Ok(())
 }
 
-fn take_means(measurement: &mut Measurement, interval_s: f64) -> Result<(), Failure> {
-    let averaged = average_record(&measurement.record, interval_s).map_err(|error| {
-        Failure::Work(miette!(
-            help = "choose --average between these, or leave it out",
-            "{}: {error}",
-            printable_path(&measurement.path)
-        ))
-    })?;
-    let bench = averaged.bench(&measurement.bench);
-    measurement.averaged = Some(averaged.report(&bench, interval_s));
-    measurement.bench = bench;
-    measurement.record = averaged.record;
+/// Takes means in the place of rows: of the intervals of `--average`, or of blocks where rows come faster than anything
+/// moves.
+fn take_means(
+    measurement: &mut Measurement,
+    arguments: &CalibrateArguments,
+) -> Result<(), Failure> {
+    let run = measurement.run();
+    let blocks = match arguments.average {
+        Some(interval_s) => Some(Blocks::every(&run, interval_s).map_err(|error| {
+            Failure::Work(miette!(
+                help = "choose --average between these, or leave it out",
+                "{}: {error}",
+                printable_path(&measurement.path)
+            ))
+        })?),
+        None => Blocks::of(&run, None).filter(|_| arguments.takes_blocks()),
+    };
+    if let Some(blocks) = blocks {
+        measurement.averaged = Some(blocks.report);
+        measurement.bench = blocks.bench;
+        measurement.record = blocks.record;
+    }
     Ok(())
 }

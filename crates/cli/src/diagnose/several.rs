@@ -37,14 +37,8 @@ pub(super) fn run(
     let mut answer = Reply::of_answer(result);
     if arguments.views.are_asked() {
         let mut parts = vec![of_result(result)];
-        for ((record, alone), bench) in arguments
-            .given
-            .records
-            .iter()
-            .zip(&found.alone)
-            .zip(&benches)
-        {
-            parts.push(page::part(record, of_diagnosis(alone, bench))?);
+        for (record, alone) in arguments.given.records.iter().zip(&found.alone) {
+            parts.push(page::part(record, of_diagnosis(alone))?);
         }
         let (views, record) = (&arguments.views, arguments.given.first());
         views.stage_parts(record, parts, drawn, &mut answer)?;

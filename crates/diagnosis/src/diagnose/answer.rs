@@ -183,6 +183,7 @@ pub fn record_summary(record: &Record) -> RecordSummary {
         rows: record.len(),
         duration_s: record.duration_s(),
         gaps: gaps(record),
+        averaged: None,
     }
 }
 

@@ -17,20 +17,19 @@ use gyrocal_answer::{Compensation, Validation};
 
 impl Diagnosis<'_> {
     /// Predicts a later record of the same platform with the nominal and the extended model, and
-    /// adds that to the answer; `first` is the record of the diagnosis. Without an extended model
-    /// there is nothing to compare, and the answer says only that the record was given. What gross
-    /// errors of the set-up spoilt in it is left out, and told in the answer.
+    /// adds that to the answer. Without an extended model there is nothing to compare, and the answer
+    /// says only that the record was given. What gross errors of the set-up spoilt in it is left out,
+    /// and told in the answer.
     ///
     /// # Errors
     /// [`DiagnosisError`], of the later record.
     pub fn validate(
         &mut self,
-        first: &Run<'_>,
         later: &Run<'_>,
         options: &DiagnoseOptions,
     ) -> Result<(), DiagnosisError> {
         let found = Gate::new(PlatformKind::Stabilised, later, &options.calibration);
-        self.validate_gated(first, found, later.bench, options)
+        self.validate_gated(found, later.bench, options)
     }
 
     /// The same with a later record whose set-up was checked.
@@ -39,7 +38,6 @@ impl Diagnosis<'_> {
     /// As [`Self::validate`].
     pub fn validate_gated(
         &mut self,
-        first: &Run<'_>,
         later: Gate<'_>,
         later_bench: &Bench,
         options: &DiagnoseOptions,
@@ -52,10 +50,10 @@ impl Diagnosis<'_> {
             record: &usable,
             bench: later_bench,
         };
-        let diagnosed = self.record.clone();
+        let (record, bench) = (self.record.clone(), self.bench.clone());
         let first = &Run {
-            record: &diagnosed,
-            bench: first.bench,
+            record: &record,
+            bench: &bench,
         };
         let Some(extended) = &self.extended else {
             return Ok(());

@@ -1,10 +1,11 @@
 //! The diagnosis of a record that is calibrated.
 
 use gyrocal_answer::{Answer, Finding, FindingKind, ResidualVerdict};
-use gyrocal_calibration::{GyroAxes, Run, average_record};
+use gyrocal_calibration::{GyroAxes, Run};
 use gyrocal_record::{EffectTest, NamedCause};
 
 use super::{DiagnoseOptions, diagnose_sound};
+use crate::blocks::Blocks;
 use crate::error::DiagnosisError;
 
 /// A record with more rows is averaged before it is diagnosed.
@@ -36,14 +37,10 @@ pub(crate) fn diagnose_calibrated(
         .map(|found| effect_test(file, &found.result))
     };
     let interval_s = mean_interval_s(run).filter(|_| axes.is_none());
-    if let Some(means) = interval_s.and_then(|s| average_record(run.record, s).ok()) {
-        let bench = means.bench(run.bench);
-        return of(&Run {
-            record: &means.record,
-            bench: &bench,
-        });
+    match interval_s.and_then(|length_s| Blocks::every(run, length_s).ok()) {
+        Some(means) => of(&means.run()),
+        None => of(run),
     }
-    of(run)
 }
 
 /// The interval of means, if the record has many rows.

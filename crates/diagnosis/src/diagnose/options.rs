@@ -1,8 +1,13 @@
 //! Settings of a diagnosis.
 
+use gyrocal_answer::FalseAlarmShares;
 use gyrocal_calibration::Options;
+use gyrocal_hypothesis::{SearchOptions, Selection};
+use gyrocal_record::{Bench, Record};
 
+use crate::error_budget::RESIDUAL_TESTS;
 use crate::filter_test::TestedFilter;
+use crate::request;
 
 /// Settings of a diagnosis.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,5 +34,27 @@ impl Default for DiagnoseOptions {
             seed: 0,
             calibration: Options::default(),
         }
+    }
+}
+
+/// The effects that are searched for.
+pub(super) fn selection(record: &Record, bench: &Bench, options: &DiagnoseOptions) -> Selection {
+    let also: Vec<&str> = options.also.iter().map(String::as_str).collect();
+    request::selection(record, bench, &also)
+}
+
+/// Options of a search on a record that so much work was done on before.
+pub(super) fn search_options(
+    options: &DiagnoseOptions,
+    shares: &FalseAlarmShares,
+    work_before: u64,
+) -> SearchOptions {
+    SearchOptions {
+        false_alarm_probability: shares.search,
+        walk_probability: shares.random_walk,
+        unmodelled_probability: shares.residual_test / RESIDUAL_TESTS,
+        seed: options.seed,
+        work_before,
+        names_alone: false,
     }
 }

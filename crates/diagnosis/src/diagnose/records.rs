@@ -11,7 +11,8 @@ use gyrocal_record::{Bench, Record, SetupProblem};
 use super::answer::record_summary;
 use super::noise_audited_fit::{AuditedFit, noise_audited_fit};
 use super::one_platform::OnePlatform;
-use super::{DiagnoseOptions, Diagnosis, Sound, concluded, diagnose_sound};
+use super::{DiagnoseOptions, Diagnosis, Sound, concluded, diagnose_rows};
+use crate::blocks::Blocks;
 use crate::error::DiagnosisError;
 use crate::error_budget::shares;
 use crate::gate::Gate;
@@ -44,7 +45,9 @@ pub struct RecordsDiagnosis {
 struct SoundRecord<'a> {
     name: String,
     record: Cow<'a, Record>,
-    bench: &'a Bench,
+    bench: Cow<'a, Bench>,
+    /// Its size as it was given.
+    summary: RecordSummary,
     axes: Option<GyroAxes>,
     setup: Vec<SetupProblem>,
 }
@@ -67,9 +70,11 @@ pub fn diagnose_records(
     for one in &sound {
         let setup = one.setup.clone();
         let axes = one.axes.as_ref();
-        let own = diagnose_sound(&one.record, one.bench, axes, options, setup, watch)
+        let own = diagnose_rows(&one.record, &one.bench, axes, options, setup, watch)
             .map_err(|error| of(&one.name, error))?;
-        alone.push(own.into_owned());
+        let mut own = own.into_owned();
+        own.result.record = one.summary;
+        alone.push(own);
     }
     let mut together = jointly(&sound, options, watch)?;
     let turn_ons = together
@@ -83,7 +88,7 @@ pub fn diagnose_records(
         .enumerate()
         .map(|(index, (one, alone))| RecordResult {
             name: one.name.clone(),
-            record: record_summary(&one.record),
+            record: one.summary,
             turn_on_deg_per_h: turn_ons
                 .get(index)
                 .map(|axes| axes.map(|[estimate, sigma]| Estimated { estimate, sigma })),
@@ -120,10 +125,16 @@ fn sound_records<'a>(
         let axes = axes.map_err(|error| of(&name, error.into()))?;
         let (record, setup) = gate.sound(options).map_err(|error| of(&name, error))?;
         request::check(&options.also, &record, bench).map_err(|error| of(&name, error))?;
+        let summary = record_summary(&record);
+        let (record, bench, averaged) = Blocks::or_rows(record, bench, axes.as_ref());
         sound.push(SoundRecord {
             name,
             record,
             bench,
+            summary: RecordSummary {
+                averaged,
+                ..summary
+            },
             axes,
             setup,
         });
@@ -164,7 +175,7 @@ fn audited<'a>(
     for one in sound {
         let run = Run {
             record: &one.record,
-            bench: one.bench,
+            bench: &one.bench,
         };
         let (axes, declared) = (one.axes.as_ref(), NoiseModel::default());
         let audited = noise_audited_fit(&run, axes, &declared, &of_audit, &options.calibration)
@@ -174,7 +185,7 @@ fn audited<'a>(
             .accel_ratio
             .map(|ratio| ratio * one.bench.accel_noise_g);
         let cleaned = audited.audit.cleaned.apply(&one.record);
-        let tested = magnitude_test(&cleaned, one.bench, &noise_g, of_magnitude).ok();
+        let tested = magnitude_test(&cleaned, &one.bench, &noise_g, of_magnitude).ok();
         magnitudes.extend(tested.map(|tested| (one.name.as_str(), tested)));
         audits.push(audited);
     }
@@ -220,40 +231,39 @@ fn jointly(
 
 fn searched_together(
     sound: &[SoundRecord<'_>],
-    Audited {
-        audits,
-        magnitude,
-        work: before,
-        shares,
-    }: Audited<'_>,
+    audited: Audited<'_>,
     options: &DiagnoseOptions,
     watch: &mut dyn FnMut(Stage),
 ) -> Result<Diagnosis<'static>, DiagnosisError> {
+    let Audited { audits, .. } = audited;
     let start = work();
-    let benches: Vec<&Bench> = sound.iter().map(|one| one.bench).collect();
+    let benches: Vec<&Bench> = sound.iter().map(|one| &*one.bench).collect();
     let fits: Vec<FittedPlatform<'_>> = audits.iter().map(|one| one.nominal.clone()).collect();
     let nominal = FittedPlatform::joined(&fits, &benches)?;
     let records: Vec<&Record> = sound.iter().map(|one| &*one.record).collect();
     let (record, starts) = joined_record(&records);
-    let audited = merged(audits, nominal, &record, &starts);
     let Some(first) = sound.first() else {
         return Err(DiagnosisError::Calibration(CalibrationError::NoRecords));
     };
     let joined = Sound {
         run: Run {
             record: &record,
-            bench: first.bench,
+            bench: &first.bench,
         },
         setup: sound
             .iter()
             .flat_map(|one| problems_of(&one.name, one.setup.clone()))
             .collect(),
-        magnitude,
-        audited,
-        work: before + (work() - start),
-        shares,
+        magnitude: audited.magnitude,
+        audited: merged(audits, nominal, &record, &starts),
+        work: audited.work + (work() - start),
+        shares: audited.shares,
     };
-    Ok(concluded(joined, options, watch)?.into_owned())
+    let mut found = concluded(joined, options, watch)?.into_owned();
+    // The next run follows the last record.
+    let last = sound.last().unwrap_or(first);
+    found.bench = Cow::Owned(last.bench.clone().into_owned());
+    Ok(found)
 }
 
 /// Problems of the set-up of one of several records, with its name.
@@ -367,6 +377,7 @@ pub fn records_summary<'a>(records: impl IntoIterator<Item = &'a RecordSummary>)
         rows: 0,
         duration_s: 0.0,
         gaps: Gaps::default(),
+        averaged: None,
     };
     for own in records {
         all.gaps = both(&all.gaps, all.rows as f64, &own.gaps, own.rows as f64);

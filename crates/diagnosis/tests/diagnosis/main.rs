@@ -1,6 +1,7 @@
 //! Tests of the library in one program: to compile and link one for each file would take most of their time.
 #![cfg(test)]
 
+mod blocks;
 mod causes;
 mod extended_unit;
 mod far_off;

@@ -2,7 +2,7 @@
 
 use gyrocal_diagnosis::{Diagnosis, OpenLoopSimulation, magnitude_channel};
 use gyrocal_document::{Band, Chart, Item, Level, Line, LineKind, Panel, Section, Tint};
-use gyrocal_record::{AXES, Bench, Record};
+use gyrocal_record::{AXES, Record};
 use gyrocal_statistics::{BinMean, BinnedMeans, binned_means};
 
 use super::section;
@@ -80,8 +80,8 @@ fn scattered_means(covariate: &[f64], residual: &[f64]) -> Option<(Vec<BinMean>,
 
 /// The magnitude of specific force against its components, time and temperature; `None` of a record with too few
 /// complete rows for the bins.
-pub(super) fn magnitude(diagnosis: &Diagnosis<'_>, bench: &Bench) -> Option<Section> {
-    let record = &diagnosis.record;
+pub(super) fn magnitude(diagnosis: &Diagnosis<'_>) -> Option<Section> {
+    let (record, bench) = (&diagnosis.record, &diagnosis.bench);
     let (noise_g, gravity_g) = ([bench.accel_noise_g; 3], bench.specific_force_at_rest());
     let found = magnitude_channel(record, &noise_g, gravity_g, BINS).ok()?;
     let against =

@@ -12,7 +12,6 @@ mod test_table;
 use gyrocal_answer::{Answer, Verdict};
 use gyrocal_diagnosis::Diagnosis;
 use gyrocal_document::{Item, Part, Section};
-use gyrocal_record::Bench;
 
 use crate::error::PageError;
 use crate::origin::{file_name, origin};
@@ -22,11 +21,11 @@ use open_loop::Simulated;
 ///
 /// # Errors
 /// [`PageError`] where a simulation fails. A series for which the record is too short is left out.
-pub fn of_diagnosis(diagnosis: &Diagnosis<'_>, bench: &Bench) -> Result<Part, PageError> {
+pub fn of_diagnosis(diagnosis: &Diagnosis<'_>) -> Result<Part, PageError> {
     let result = &diagnosis.result;
     let simulated = Simulated {
         record: &diagnosis.record,
-        bench,
+        bench: &diagnosis.bench,
         nominal: &diagnosis.nominal,
         extended: diagnosis.extended.as_ref(),
         effects: accepted(result),
@@ -38,7 +37,7 @@ pub fn of_diagnosis(diagnosis: &Diagnosis<'_>, bench: &Bench) -> Result<Part, Pa
     sections.extend(coefficients::section(result, convergence));
     sections.push(limits::cannot_tell(result));
     sections.push(residuals::section(result, residuals::charts(diagnosis)));
-    sections.extend(covariates::magnitude(diagnosis, bench));
+    sections.extend(covariates::magnitude(diagnosis));
     sections.extend(gain::section(result, diagnosis.later.as_ref()));
     let best = diagnosis.extended.as_ref().unwrap_or(&diagnosis.nominal);
     sections.push(coefficients::site(best)?);

@@ -2,6 +2,7 @@
 
 use gyrocal_record::printable_line;
 
+use crate::calibration::means;
 use crate::files::{few, joined};
 use crate::format::{counted, size};
 use gyrocal_answer::{Answer, SetupProblem};
@@ -12,7 +13,10 @@ const RECORDS_SHOWN: usize = 4;
 
 /// The record and its size.
 pub(super) fn record(result: &Answer) -> String {
-    let size = size(result.record.rows, result.record.duration_s);
+    let mut size = size(result.record.rows, result.record.duration_s);
+    if let Some(averaged) = &result.record.averaged {
+        size += &format!(", {}", means(averaged));
+    }
     if result.records.is_empty() {
         let path = result.manifest.inputs.first();
         let name = path.map_or("record".into(), |input| printable_line(&input.path));
