@@ -17,20 +17,8 @@ fn log() -> String {
 fn deviations_are_printed_and_written() {
     let folder = Folder::new();
     folder.put("l.csv", log());
-    let text = folder.succeed(&[
-        "allan",
-        "l.csv",
-        "--columns",
-        "rate",
-        "--rate-hz",
-        "10",
-        "--scale",
-        "2",
-        "--unit",
-        "deg/h",
-        "--json",
-        "o.json",
-    ]);
+    let text = folder
+        .succeed("allan l.csv --columns rate --rate-hz 10 --scale 2 --unit deg/h --json o.json");
     // The handbook prints 2.922319e-1 for the first.
     assert!(text.contains("5.8446e-1"), "{text}");
     let json: serde_json::Value = serde_json::from_str(&folder.text("o.json")).unwrap();
@@ -54,14 +42,7 @@ fn bad_input_is_told() {
         "{errors}"
     );
     // The other column of the log holds ones.
-    let errors = folder.fail(&[
-        "allan",
-        "l.csv",
-        "--columns",
-        "rate,other",
-        "--rate-hz",
-        "10",
-    ]);
+    let errors = folder.fail("allan l.csv --columns rate,other --rate-hz 10");
     assert!(
         errors.contains("found a column `other` that never changes"),
         "{errors}"
@@ -122,16 +103,8 @@ fn a_description_stands_for_columns_and_rate() {
          columns = [\"gx\", \"gy\", \"gz\"]\nunit = \"deg/s\"\n[accel]\ncolumns = [\"ax\", \"ay\", \
          \"az\"]\nunit = \"g\"\n",
     );
-    let text = folder.succeed(&[
-        "allan",
-        "l.txt",
-        "--log-description",
-        "log.toml",
-        "--estimator",
-        "hadamard",
-        "--json",
-        "o.json",
-    ]);
+    let text =
+        folder.succeed("allan l.txt --log-description log.toml --estimator hadamard --json o.json");
     assert!(text.contains("steady clock"), "{text}");
     assert!(
         text.contains("Overlapping Hadamard deviation") && text.contains("deviation, deg/h"),
@@ -161,17 +134,8 @@ fn a_sample_that_no_noise_explains_is_left_out_and_told() {
             text + if line == 501 { "900,1" } else { row } + "\n"
         });
     folder.put("l.csv", wild);
-    let arguments = [
-        "allan",
-        "l.csv",
-        "--columns",
-        "rate",
-        "--rate-hz",
-        "10",
-        "--json",
-        "o.json",
-    ];
-    let text = folder.succeed(&arguments);
+    let arguments = "allan l.csv --columns rate --rate-hz 10 --json o.json";
+    let text = folder.succeed(arguments);
     assert!(text.starts_with("BAD SAMPLES  1 sample"), "{text}");
     assert!(text.contains("sample 501 at 50 s (900 "), "{text}");
     let json: serde_json::Value = serde_json::from_str(&folder.text("o.json")).unwrap();

@@ -11,14 +11,7 @@ use gyrocal_record::{CalibrationReport, FitVerdict, SetupProblem};
 
 use crate::folder::{Folder, example};
 
-const JSON: [&str; 6] = [
-    "calibrate",
-    "r.csv",
-    "--bench",
-    "b.toml",
-    "--json",
-    "o.json",
-];
+const JSON: &str = "calibrate r.csv --bench b.toml --json o.json";
 
 /// Header and the first rows of the record that ships, one a minute.
 fn record(rows: usize) -> String {
@@ -36,7 +29,7 @@ fn refused(record: impl AsRef<[u8]>, bench: impl AsRef<[u8]>) -> String {
     let folder = Folder::new();
     folder.put("r.csv", record);
     folder.put("b.toml", bench);
-    folder.fail(&JSON)
+    folder.fail(JSON)
 }
 
 /// The record with one line, counted from 1, replaced.
@@ -57,7 +50,7 @@ fn what_the_cases_start_from_is_good() {
     let folder = Folder::new();
     folder.put("r.csv", record(12));
     folder.put("b.toml", bench());
-    folder.succeed(&JSON);
+    folder.succeed(JSON);
     assert_eq!(folder.names(), ["b.toml", "o.json", "r.csv"]);
 }
 
@@ -120,7 +113,7 @@ fn wrong_setup(record: impl AsRef<[u8]>, bench: impl AsRef<[u8]>) -> (String, Se
     let folder = Folder::new();
     folder.put("r.csv", record);
     folder.put("b.toml", bench);
-    let errors = folder.fail_writing(&JSON, &["o.json"]);
+    let errors = folder.fail_writing(JSON, &["o.json"]);
     let mut report: CalibrationReport = serde_json::from_str(&folder.text("o.json")).unwrap();
     assert_eq!(report.verdict, FitVerdict::Setup);
     assert!(report.coefficients.is_empty() && report.nis_mean.is_none());
@@ -209,7 +202,7 @@ fn an_axis_in_another_unit_is_corrected_told_and_used() {
     });
     folder.put("r.csv", lines.collect::<String>());
     folder.put("b.toml", bench());
-    let said = folder.succeed(&JSON);
+    let said = folder.succeed(JSON);
     assert_says(&said.replace('\n', " "), "Its unit seems to be m/s^2.");
     let report: CalibrationReport = serde_json::from_str(&folder.text("o.json")).unwrap();
     assert_eq!(report.setup.len(), 1);
@@ -250,7 +243,7 @@ fn a_temperature_in_kelvins_is_told_with_its_lines_and_converted() {
     };
     folder.put("r.csv", with(273.15));
     folder.put("b.toml", bench());
-    let said = folder.succeed(&JSON).replace('\n', " ");
+    let said = folder.succeed(JSON).replace('\n', " ");
     assert_says(&said, "It seems to be in K");
     assert_says(&said, "r.csv:2-301");
     let report: CalibrationReport = serde_json::from_str(&folder.text("o.json")).unwrap();
@@ -263,7 +256,7 @@ fn a_temperature_in_kelvins_is_told_with_its_lines_and_converted() {
     let told: Answer = serde_json::from_str(&folder.text("d.json")).unwrap();
     assert_eq!(told.setup, report.setup);
     folder.put("r.csv", with(0.0));
-    folder.succeed(&JSON);
+    folder.succeed(JSON);
     let report: CalibrationReport = serde_json::from_str(&folder.text("o.json")).unwrap();
     assert_eq!(report.setup, []);
 }
@@ -350,9 +343,9 @@ fn bad_bench_files_are_shown_where_they_are_wrong() {
 #[test]
 fn files_that_are_not_there_are_named() {
     let folder = Folder::new();
-    assert_says(&folder.fail(&JSON), "b.toml: cannot be read: ");
+    assert_says(&folder.fail(JSON), "b.toml: cannot be read: ");
     folder.put("b.toml", bench());
-    assert_says(&folder.fail(&JSON), "r.csv: cannot be read: ");
+    assert_says(&folder.fail(JSON), "r.csv: cannot be read: ");
 }
 
 #[test]
@@ -373,6 +366,6 @@ fn a_refused_input_leaves_an_older_output_as_it_was() {
     folder.put("r.csv", record(5));
     folder.put("b.toml", bench());
     folder.put("o.json", "old");
-    folder.fail(&JSON);
+    folder.fail(JSON);
     assert_eq!(folder.text("o.json"), "old");
 }

@@ -9,15 +9,8 @@ use serde_json::Value;
 
 use crate::folder::{Folder, example, repository};
 
-const PLAIN: [&str; 4] = ["calibrate", "r.csv", "--bench", "b.toml"];
-const JSON: [&str; 6] = [
-    "calibrate",
-    "r.csv",
-    "--bench",
-    "b.toml",
-    "--json",
-    "o.json",
-];
+const PLAIN: &str = "calibrate r.csv --bench b.toml";
+const JSON: &str = "calibrate r.csv --bench b.toml --json o.json";
 
 /// A folder with the record that ships and its bench description.
 fn folder() -> Folder {
@@ -35,7 +28,7 @@ fn truth() -> Scenario {
 #[test]
 fn the_record_that_ships_gives_the_coefficients_of_its_scenario() {
     let folder = folder();
-    let said = folder.succeed(&JSON);
+    let said = folder.succeed(JSON);
     let report: CalibrationReport = serde_json::from_str(&folder.text("o.json")).unwrap();
     let truth = truth().coefficients.named();
     assert_eq!(report.coefficients.len(), truth.len());
@@ -71,7 +64,7 @@ fn the_record_that_ships_gives_the_coefficients_of_its_scenario() {
 #[test]
 fn the_table_shows_what_the_json_says_rounded_by_its_sigma() {
     let folder = folder();
-    let said = folder.succeed(&JSON);
+    let said = folder.succeed(JSON);
     let report: CalibrationReport = serde_json::from_str(&folder.text("o.json")).unwrap();
     for coefficient in report.coefficients {
         // The table of the first screen comes before that of the details.
@@ -99,7 +92,7 @@ fn the_table_shows_what_the_json_says_rounded_by_its_sigma() {
 #[expect(clippy::cognitive_complexity, reason = "one field after the other")]
 fn the_json_has_every_field_of_its_contract() {
     let folder = folder();
-    folder.succeed_as_is(&JSON);
+    folder.succeed_as_is(JSON);
     let json: Value = serde_json::from_str(&folder.text("o.json")).unwrap();
     assert_eq!(json["schema_version"], CALIBRATION_SCHEMA_VERSION);
     assert_eq!(json["method"], "batch");
@@ -193,7 +186,7 @@ fn final_angles_are_those_of_the_simulated_platform() {
         "--json",
         "t.json",
     ]);
-    let said = folder.succeed(&JSON);
+    let said = folder.succeed(JSON);
     let [found, expected] = ["o.json", "t.json"].map(|name| -> [f64; 3] {
         let json: Value = serde_json::from_str(&folder.text(name)).unwrap();
         serde_json::from_value(json["final_angles_deg"].clone()).unwrap()
@@ -213,7 +206,7 @@ pub(crate) fn unwrapped(said: &str) -> String {
 
 #[test]
 fn the_effect_of_latitude_is_that_of_the_symmetry() {
-    let said = unwrapped(&folder().succeed(&PLAIN));
+    let said = unwrapped(&folder().succeed(PLAIN));
     let (_, rest) = said.split_once("mean of the three D_I by ").unwrap();
     let shift: f64 = rest.split(' ').next().unwrap().parse().unwrap();
     // Turning the meridian by 1 arc second is lowering all D_I by rate / cos(latitude) times it,
@@ -231,9 +224,7 @@ fn report(folder: &Folder) -> CalibrationReport {
 #[test]
 fn the_filter_of_the_paper_does_not_fit_what_it_did_not_simulate() {
     let folder = folder();
-    let mut arguments = JSON.to_vec();
-    arguments.push("--paper");
-    let said = folder.succeed(&arguments);
+    let said = folder.succeed(format!("{JSON} --paper"));
     assert!(
         said.contains(
             "The innovations are larger than the declared noise: the sigmas are too small."
@@ -257,7 +248,7 @@ fn missing_values_and_other_priors_are_honoured() {
     let mut narrow = bench.clone();
     narrow.prior.gg_sigma_deg_per_h_per_g2 = [1e-6; 3];
     narrow.write(&folder.path("b.toml")).unwrap();
-    folder.succeed(&JSON);
+    folder.succeed(JSON);
     let report: CalibrationReport = serde_json::from_str(&folder.text("o.json")).unwrap();
     // Every third row of 4321, the first included, has no value.
     assert_eq!(report.rows, 2880);
@@ -271,7 +262,7 @@ fn missing_values_and_other_priors_are_honoured() {
 fn verbose_tells_more() {
     let folder = folder();
     let [plain, detailed, reporting] = ["--color=auto", "-v", "-vv"].map(|more| {
-        let output = folder.run(&[&PLAIN[..], &[more]].concat());
+        let output = folder.run(format!("{PLAIN} {more}"));
         let errors = String::from_utf8(output.stderr).unwrap();
         (String::from_utf8(output.stdout).unwrap(), errors)
     });

@@ -72,15 +72,7 @@ fn a_killed_run_goes_on_where_it_was_and_says_the_same() {
     assert_eq!(folder.text("o.md"), fresh.text("o.md"));
 
     // Results of other methods are other results.
-    let errors = folder.fail(&[
-        "characterise",
-        "--cell",
-        "cubic",
-        "--runs",
-        "1",
-        "--results",
-        "runs",
-    ]);
+    let errors = folder.fail("characterise --cell cubic --runs 1 --results runs");
     assert!(
         errors.contains(
             "results of another campaign, of methods `bic`, expected `nis, ljung-box, bic, stls`"

@@ -32,29 +32,9 @@ fn cells(text: &str) -> Vec<Vec<String>> {
 #[test]
 fn a_mapped_record_has_the_coefficients_of_the_record() {
     let folder = folder();
-    folder.succeed(&[
-        "calibrate",
-        "l.csv",
-        "--bench",
-        "b.toml",
-        "--columns",
-        "map.toml",
-        "--no-noise",
-        "--json",
-        "mapped.json",
-        "--coefficients",
-        "mapped.csv",
-    ]);
+    folder.succeed("calibrate l.csv --bench b.toml --columns map.toml --no-noise --json mapped.json --coefficients mapped.csv");
     folder.put_example("three_days.csv");
-    folder.succeed(&[
-        "calibrate",
-        "three_days.csv",
-        "--bench",
-        "b.toml",
-        "--no-noise",
-        "--coefficients",
-        "plain.csv",
-    ]);
+    folder.succeed("calibrate three_days.csv --bench b.toml --no-noise --coefficients plain.csv");
     let [mapped, plain] = ["mapped.csv", "plain.csv"].map(|name| cells(&folder.text(name)));
     assert_eq!((mapped.len(), mapped[0].len()), (9, 5));
     for (mapped, plain) in mapped.iter().zip(&plain) {
@@ -74,16 +54,8 @@ fn a_pipe_is_read_once_and_whole() {
     folder.put_example("three_days.csv");
     folder.put("b.toml", example("three_days.bench.toml"));
     let of = |record: &str, table: &str| {
-        let ends = [
-            "--bench",
-            "b.toml",
-            "--json",
-            "r.json",
-            "--coefficients",
-            table,
-        ];
-        let all = [&["calibrate", record][..], &ends].concat();
-        let output = folder.run_with_stdin(&all, "three_days.csv");
+        let all = format!("calibrate {record} --bench b.toml --json r.json --coefficients {table}");
+        let output = folder.run_with_stdin(all, "three_days.csv");
         assert!(output.status.success(), "{output:?}");
         let json: serde_json::Value = serde_json::from_str(&folder.text("r.json")).unwrap();
         let hash = json["manifest"]["inputs"][0]["sha256"].clone();
@@ -110,8 +82,7 @@ fn a_record_without_its_map_is_refused_with_one() {
         "{errors}"
     );
     // Followed to the letter.
-    let words: Vec<&str> = command.split(' ').skip(1).collect();
-    let proposed = folder.succeed(&words);
+    let proposed = folder.succeed(command.trim_start_matches("gyrocal "));
     assert!(
         proposed.contains("MAP PROPOSED") && proposed.contains("4321 rows"),
         "{proposed}"
@@ -123,28 +94,13 @@ fn a_record_without_its_map_is_refused_with_one() {
             folder.text("MAP.toml")
         );
     }
-    folder.succeed(&[
-        "calibrate",
-        "l.csv",
-        "--bench",
-        "b.toml",
-        "--columns",
-        "MAP.toml",
-        "--no-noise",
-    ]);
+    folder.succeed("calibrate l.csv --bench b.toml --columns MAP.toml --no-noise");
     folder.put("map.toml", MAP.replace("decimal = \"comma\"\n", ""));
-    let arguments = [
-        "diagnose",
-        "l.csv",
-        "--bench",
-        "b.toml",
-        "--columns",
-        "map.toml",
-    ];
-    let errors = folder.fail(&arguments);
+    let arguments = "diagnose l.csv --bench b.toml --columns map.toml";
+    let errors = folder.fail(arguments);
     assert!(errors.contains("`decimal = \"comma\"`"), "{errors}");
     folder.put("map.toml", MAP.replace("aZ", "az"));
-    let errors = folder.fail(&arguments);
+    let errors = folder.fail(arguments);
     assert!(
         errors.contains("a column `az`") && errors.contains("Zeit, aX, aY, aZ"),
         "{errors}"
@@ -154,19 +110,11 @@ fn a_record_without_its_map_is_refused_with_one() {
 #[test]
 fn an_imported_record_is_read_by_every_command() {
     let folder = folder();
-    let arguments = [
-        "import",
-        "csv",
-        "l.csv",
-        "--columns",
-        "map.toml",
-        "--out",
-        "r.csv",
-    ];
-    let text = folder.succeed(&arguments);
+    let import = "import csv l.csv --columns map.toml --out r.csv";
+    let text = folder.succeed(import);
     assert!(text.contains("4321 rows"), "{text}");
     folder.succeed(&["calibrate", "r.csv", "--bench", "b.toml", "--no-noise"]);
-    let errors = folder.fail(&[&arguments[..], &["--average", "60"]].concat());
+    let errors = folder.fail(format!("{import} --average 60"));
     assert!(errors.contains("calibrate --average"), "{errors}");
 }
 
@@ -201,18 +149,11 @@ fn a_clock_that_begins_again_is_split_to_the_letter() {
             "{said}"
         );
     }
-    let answer = folder.succeed(&[
-        "import",
-        "csv",
-        "logged.csv",
-        "--split",
-        "--out",
-        "PART.csv",
-    ]);
+    let answer = folder.succeed("import csv logged.csv --split --out PART.csv");
     let answer = answer.split_whitespace().collect::<Vec<_>>().join(" ");
     let next = "calibrate PART.1.csv PART.2.csv --bench BENCH.toml --bench FREE.toml";
     assert!(answer.contains(next), "{answer}");
-    folder.succeed(&next.split(' ').collect::<Vec<_>>());
+    folder.succeed(next);
     assert_eq!(folder.text("PART.2.csv").lines().count(), 2322);
 }
 
@@ -221,16 +162,7 @@ fn findings_are_a_table_of_their_parameters() {
     let folder = Folder::new();
     folder.put_example("hidden_fault.csv");
     folder.put_example("hidden_fault.bench.toml");
-    folder.succeed(&[
-        "diagnose",
-        "hidden_fault.csv",
-        "--bench",
-        "hidden_fault.bench.toml",
-        "--findings",
-        "f.csv",
-        "--coefficients",
-        "c.csv",
-    ]);
+    folder.succeed("diagnose hidden_fault.csv --bench hidden_fault.bench.toml --findings f.csv --coefficients c.csv");
     let findings = cells(&folder.text("f.csv"));
     assert_eq!(findings[0][0], "gyro_y.g_z");
     let coefficients = cells(&folder.text("c.csv"));

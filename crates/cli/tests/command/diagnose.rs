@@ -13,21 +13,10 @@ use gyrocal_answer::{
     AllanCourse, AlternativeKind, Answer, FindingKind, ResidualVerdict, SCHEMA_VERSION, Verdict,
 };
 
-use crate::folder::{Folder, repository};
+use crate::folder::{BENCH, Folder, RECORD, hidden_fault as folder, repository};
 
 /// Width of the PNGs that the command writes, px.
 const PNG_WIDTH_PX: u32 = 1200;
-
-const RECORD: &str = "hidden_fault.csv";
-const BENCH: &str = "hidden_fault.bench.toml";
-
-fn folder() -> Folder {
-    let folder = Folder::new();
-    for name in [RECORD, BENCH] {
-        folder.put_example(name);
-    }
-    folder
-}
 
 /// A written result.
 fn report(folder: &Folder, name: &str) -> Answer {
@@ -39,18 +28,9 @@ fn whole() -> &'static (String, Folder) {
     static WHOLE: OnceLock<(String, Folder)> = OnceLock::new();
     WHOLE.get_or_init(|| {
         let folder = folder();
-        let said = folder.succeed(&[
-            "diagnose",
-            RECORD,
-            "--bench",
-            BENCH,
-            "--json",
-            "o.json",
-            "--figures",
-            "figures",
-            "--filter",
-            "euler",
-        ]);
+        let said = folder.succeed(&format!(
+            "diagnose {RECORD} --bench {BENCH} --json o.json --figures figures --filter euler"
+        ));
         (said, folder)
     })
 }
@@ -277,16 +257,9 @@ fn a_clean_record_is_called_clean() {
     for name in ["three_days.csv", "three_days.bench.toml"] {
         folder.put_example(name);
     }
-    let arguments = [
-        "diagnose",
-        "three_days.csv",
-        "--bench",
-        "three_days.bench.toml",
-        "--json",
-        "o.json",
-        "--exit-code",
-    ];
-    let said = folder.succeed(&arguments);
+    let arguments =
+        "diagnose three_days.csv --bench three_days.bench.toml --json o.json --exit-code";
+    let said = folder.succeed(arguments);
     assert!(said.starts_with("NO FAULT FOUND"), "{said}");
     let value: serde_json::Value = serde_json::from_str(&folder.text("o.json")).unwrap();
     assert_eq!(value["verdict"], "clean");

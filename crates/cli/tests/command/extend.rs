@@ -136,13 +136,7 @@ fn a_member_of_a_set_takes_the_place_of_the_effect_that_is_named() {
 #[test]
 fn a_list_of_effects_is_a_model_without_estimates() {
     let folder = Folder::new();
-    let said = folder.succeed(&[
-        "extend",
-        "--effects",
-        "gyro_z.step,gyro_x.g_yy",
-        "--out",
-        "m.model.toml",
-    ]);
+    let said = folder.succeed("extend --effects gyro_z.step,gyro_x.g_yy --out m.model.toml");
     assert_says(
         &folder.text("m.model.toml"),
         "effects = [\"gyro_z.step\", \"gyro_x.g_yy\"]\n",
@@ -242,16 +236,9 @@ fn a_diagnosis_or_a_list_is_asked_for() {
     let folder = Folder::new();
     folder.put("d.json", "{}");
     for arguments in [
-        &["extend", "--out", "m.toml"][..],
-        &[
-            "extend",
-            "d.json",
-            "--effects",
-            "gyro_y.g_z",
-            "--out",
-            "m.toml",
-        ],
-        &["extend", "d.json", "--out", "./d.json"],
+        "extend --out m.toml",
+        "extend d.json --effects gyro_y.g_z --out m.toml",
+        "extend d.json --out ./d.json",
     ] {
         assert_eq!(
             folder.run(arguments).status.code(),
@@ -286,25 +273,9 @@ fn a_fault_of_a_strapdown_unit_goes_from_its_record_to_the_model_file() {
     }
     .simulate();
     unit.write(&folder.path("")).unwrap();
-    let diagnosed = [
-        "diagnose",
-        "record.csv",
-        "--bench",
-        "bench.toml",
-        "--gyro-axes",
-        "axes.csv",
-        "--json",
-        "d.json",
-    ];
-    folder.succeed(&diagnosed);
-    let said = folder.succeed(&[
-        "extend",
-        "d.json",
-        "--out",
-        "unit.model.toml",
-        "--json",
-        "o.json",
-    ]);
+    let diagnosed = "diagnose record.csv --bench bench.toml --gyro-axes axes.csv --json d.json";
+    folder.succeed(diagnosed);
+    let said = folder.succeed("extend d.json --out unit.model.toml --json o.json");
     assert_says(&said, "gyros        fixed to a body");
     let text = folder.text("unit.model.toml");
     assert_says(
@@ -338,16 +309,10 @@ fn known() -> Vec<KnownEffect<'static>> {
 #[test]
 fn a_list_of_effects_says_what_the_gyros_are_fixed_to() {
     let folder = Folder::new();
-    let listed = [
-        "extend",
-        "--effects",
-        "gyro_y.ramp",
-        "--out",
-        "m.model.toml",
-    ];
-    folder.succeed(&[&listed[..], &["--gyros", "strapdown"]].concat());
+    let listed = "extend --effects gyro_y.ramp --out m.model.toml";
+    folder.succeed(format!("{listed} --gyros strapdown"));
     assert_says(&folder.text("m.model.toml"), "gyros = \"strapdown\"\n");
-    folder.succeed(&[&listed[..], &["--gyros", "platform"]].concat());
+    folder.succeed(format!("{listed} --gyros platform"));
     assert!(!folder.text("m.model.toml").contains("gyros"));
     // A diagnosis says it itself.
     let output = folder.run(&[&MODEL[..], &["--gyros", "strapdown"]].concat());

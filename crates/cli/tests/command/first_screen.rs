@@ -1,7 +1,7 @@
 //! The first screen of every command, on a terminal of 80 columns and 24 lines: it fits, with the
 //! prompt, and its first three lines hold the verdict.
 
-use crate::folder::{Folder, example, repository, repository_argument};
+use crate::folder::{CommandLine, Folder, example, repository, repository_argument};
 
 const COLUMNS: usize = 80;
 
@@ -10,12 +10,12 @@ const LINES: usize = 22;
 
 /// The screen of a command, which fits and has these words in its first three lines.
 #[track_caller]
-fn assert_screen(folder: &Folder, arguments: &[&str], verdict: &[&str]) -> String {
-    let output = folder.run_on_a_terminal(arguments);
+fn assert_screen(folder: &Folder, arguments: impl CommandLine, verdict: &[&str]) -> String {
+    let output = folder.run_on_a_terminal(&arguments);
     let said = String::from_utf8(output.stdout).unwrap();
     let errors = String::from_utf8(output.stderr).unwrap();
     // Without a command there is no result.
-    let expected = if arguments.is_empty() { 2 } else { 0 };
+    let expected = if arguments.words().is_empty() { 2 } else { 0 };
     assert_eq!(output.status.code(), Some(expected), "{errors}");
     assert!(said.lines().count() <= LINES, "{said}");
     for line in said.lines() {
@@ -126,27 +126,12 @@ fn simulations_fit() {
     let folder = Folder::new();
     let scenario = repository_argument("examples/data/three_days.scenario.toml");
     folder.put("s.toml", std::fs::read(scenario).unwrap());
-    let arguments = [
-        "simulate",
-        "s.toml",
-        "--out",
-        "r.csv",
-        "--bench-out",
-        "b.toml",
-    ];
-    assert_screen(&folder, &arguments, &["SIMULATED  r.csv: 4321 rows"]);
+    let arguments = "simulate s.toml --out r.csv --bench-out b.toml";
+    assert_screen(&folder, arguments, &["SIMULATED  r.csv: 4321 rows"]);
     let arguments = ["monte-carlo", "s.toml", "--seeds", "0..4"];
     assert_screen(&folder, &arguments, &["CONSISTENT  4 runs, 0 failed"]);
-    let arguments = [
-        "characterise",
-        "--cell",
-        "d8",
-        "--runs",
-        "1",
-        "--method",
-        "none",
-    ];
-    assert_screen(&folder, &arguments, &["figures hold"]);
+    let arguments = "characterise --cell d8 --runs 1 --method none";
+    assert_screen(&folder, arguments, &["figures hold"]);
 }
 
 #[test]
@@ -173,28 +158,18 @@ fn tests_of_instruments_fit() {
         &allan,
         &["NOISE NOT EXPLAINED", "in 3 of 3 columns"],
     );
-    let import = [
-        "import",
-        "strapdown",
-        "r.csv",
-        "--log-description",
-        "r.toml",
-        "--out",
-        "p.csv",
-        "--bench-out",
-        "p.toml",
-    ];
+    let import = "import strapdown r.csv --log-description r.toml --out p.csv --bench-out p.toml";
     let verdict = [
         "IMPORTED  61 rows",
         "horizontal rate  12.4247 ± 0.0025 deg/h",
     ];
-    assert_screen(&folder, &import, &verdict);
+    assert_screen(&folder, import, &verdict);
 }
 
 #[test]
 fn the_catalogue_and_the_greeting_fit() {
     let folder = Folder::new();
-    assert_screen(&folder, &[], &["What people do first"]);
+    assert_screen(&folder, "", &["What people do first"]);
     assert_screen(&folder, &["effects"], &["EFFECTS  114 of the catalogue"]);
     for effect in gyrocal::EFFECTS.iter() {
         let said = assert_screen(&folder, &["effects", effect.id], &[effect.id]);
@@ -281,15 +256,8 @@ fn a_random_walk_is_told_with_its_interval_and_without_a_simulation() {
     let said = assert_screen(&folder, &arguments, &["gyro_x.random_walk", "(95 %: "]);
     assert!(!said.contains("open-loop"), "{said}");
     // A filter cannot have it: the next step is not to extend one.
-    let arguments = [
-        "calibrate",
-        "r.csv",
-        "--bench",
-        "b.toml",
-        "--with",
-        "gyro_x.random_walk",
-    ];
-    let said = assert_screen(&folder, &arguments, &["FAULT"]);
+    let arguments = "calibrate r.csv --bench b.toml --with gyro_x.random_walk";
+    let said = assert_screen(&folder, arguments, &["FAULT"]);
     assert!(
         said.contains("next") && !said.contains("gyrocal extend"),
         "{said}"

@@ -95,14 +95,7 @@ fn the_record_can_be_calibrated_and_determines_what_one_attitude_determines() {
     let folder = Folder::new();
     let (log, description) = (repository_argument(LOG), repository_argument(DESCRIPTION));
     folder.succeed(&arguments(&log, &description));
-    folder.succeed(&[
-        "calibrate",
-        "r.csv",
-        "--bench",
-        "b.toml",
-        "--json",
-        "c.json",
-    ]);
+    folder.succeed("calibrate r.csv --bench b.toml --json c.json");
     let json: serde_json::Value = serde_json::from_str(&folder.text("c.json")).unwrap();
     let report: serde_json::Value = serde_json::from_str(&folder.text("o.json")).unwrap();
     let coefficients = json["coefficients"].as_array().unwrap();
@@ -136,16 +129,7 @@ fn in_the_axes_of_its_gyros_one_attitude_leaves_seven_of_nine_combinations_undet
     let folder = Folder::new();
     let (log, description) = (repository_argument(LOG), repository_argument(DESCRIPTION));
     folder.succeed(&[&arguments(&log, &description)[..], &["--axes-out", "a.csv"]].concat());
-    folder.succeed(&[
-        "calibrate",
-        "r.csv",
-        "--bench",
-        "b.toml",
-        "--gyro-axes",
-        "a.csv",
-        "--json",
-        "c.json",
-    ]);
+    folder.succeed("calibrate r.csv --bench b.toml --gyro-axes a.csv --json c.json");
     let json: serde_json::Value = serde_json::from_str(&folder.text("c.json")).unwrap();
     let coefficients = json["coefficients"].as_array().unwrap();
     let determined: Vec<&str> = coefficients
@@ -155,14 +139,7 @@ fn in_the_axes_of_its_gyros_one_attitude_leaves_seven_of_nine_combinations_undet
         .collect();
     // Body x points south. Up is gyro z's bias, g_z and g_zz together: none of them by itself.
     assert_eq!(determined, ["gyro_x.bias"]);
-    let said = folder.succeed(&[
-        "calibrate",
-        "r.csv",
-        "--bench",
-        "b.toml",
-        "--gyro-axes",
-        "a.csv",
-    ]);
+    let said = folder.succeed("calibrate r.csv --bench b.toml --gyro-axes a.csv");
     let said = unwrapped(&said);
     let combinations = said.matches(" % of that before the record");
     assert_eq!(combinations.count(), 7, "{said}");
@@ -290,17 +267,8 @@ fn a_computed_platform_is_checked_as_far_as_it_is_one() {
     let (log, description) = (repository_argument(LOG), repository_argument(DESCRIPTION));
     folder.succeed(&[&arguments(&log, &description)[..], &["--axes-out", "a.csv"]].concat());
     let sound = folder.text("r.csv");
-    let calibrate = [
-        "calibrate",
-        "r.csv",
-        "--bench",
-        "b.toml",
-        "--gyro-axes",
-        "a.csv",
-        "--json",
-        "c.json",
-    ];
-    folder.succeed(&calibrate);
+    let calibrate = "calibrate r.csv --bench b.toml --gyro-axes a.csv --json c.json";
+    folder.succeed(calibrate);
     let report: CalibrationReport = serde_json::from_str(&folder.text("c.json")).unwrap();
     assert!(report.setup.is_empty());
     assert_eq!(report.effects.len(), 1);
@@ -318,7 +286,7 @@ fn a_computed_platform_is_checked_as_far_as_it_is_one() {
         folder.put("r.csv", text + "\n");
     };
     let wrong = |kind: &str| {
-        let errors = folder.fail_writing(&calibrate, &["c.json"]);
+        let errors = folder.fail_writing(calibrate, &["c.json"]);
         let report: CalibrationReport = serde_json::from_str(&folder.text("c.json")).unwrap();
         assert_eq!(report.verdict, FitVerdict::Setup, "{errors}");
         assert_eq!(report.setup[0].kind, kind, "{errors}");

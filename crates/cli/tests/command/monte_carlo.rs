@@ -2,47 +2,37 @@
 
 use std::fs;
 use std::process::Stdio;
+use std::sync::LazyLock;
 use std::time::{Duration, Instant};
 
 use gyrocal_evaluation::MonteCarloReport;
 
 use crate::folder::Folder;
+use crate::simulate;
 
 /// Three hours, which determine little but take no time.
-const SCENARIO: &str = "\
-seed = 77
-[site]
-latitude_deg = 39.1
-[platform]
-initial_angles_deg = [10.0, 20.0, 30.0]
-initial_angles_sigma_deg = [0.01, 0.01, 0.01]
-[gyros]
-bias_deg_per_h = [0.5, -0.5, 0.5]
-g_deg_per_h_per_g = [-0.2, 0.2, 0.2]
-gg_deg_per_h_per_g2 = [-0.1, 0.1, -0.1]
-[noise]
-accel_g = 1e-5
-gyro_deg_per_h = 0.002
-[sampling]
-duration_s = 10800
-interval_s = 60
-";
+static SCENARIO: LazyLock<String> = LazyLock::new(|| {
+    simulate::SCENARIO
+        .replace("seed = 1\n", "seed = 77\n")
+        .replace("[0.0, 0.0, 0.0]", "[10.0, 20.0, 30.0]")
+        .replace("= 3600", "= 10800")
+});
 
 fn folder() -> Folder {
     let folder = Folder::new();
-    folder.put("s.toml", SCENARIO);
+    folder.put("s.toml", &*SCENARIO);
     folder
 }
 
 /// The command over these seeds, with more arguments separated by spaces.
 fn said(folder: &Folder, seeds: &str, more: &str) -> String {
     let line = format!("monte-carlo s.toml --seeds {seeds} {more}");
-    folder.succeed(&line.split_whitespace().collect::<Vec<_>>())
+    folder.succeed(line)
 }
 
 fn refused(folder: &Folder, more: &str) -> String {
     let line = format!("monte-carlo s.toml --seeds 0..3 {more}");
-    folder.fail(&line.split_whitespace().collect::<Vec<_>>())
+    folder.fail(line)
 }
 
 /// The numbers between a name at the beginning of a line and the end of that line.
@@ -266,7 +256,7 @@ fn files_that_are_not_of_this_campaign_are_refused_and_left_alone() {
     assert_eq!(folder.text("runs.jsonl"), kept);
 
     // Another build may compute otherwise.
-    folder.put("s.toml", SCENARIO);
+    folder.put("s.toml", &*SCENARIO);
     let (before, after) = kept.split_once("[\"program\",\"").unwrap();
     let (_, after) = after.split_once('"').unwrap();
     let another = format!("{before}[\"program\",\"0123456789abcdef\"{after}");
@@ -332,7 +322,7 @@ fn bad_input_is_refused_before_any_work() {
         ("", "--seeds"),
     ] {
         let line = format!("monte-carlo s.toml {more}");
-        let output = folder.run(&line.split_whitespace().collect::<Vec<_>>());
+        let output = folder.run(line);
         let errors = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(2), "{errors}");
         assert!(errors.contains(message), "{errors}");

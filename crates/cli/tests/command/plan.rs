@@ -3,39 +3,15 @@
 use gyrocal_design::{Aim, AttitudeOf, PlanResult};
 
 use crate::diagnose::hidden_fault;
-use crate::folder::{Folder, repository_argument};
-
-const RECORD: &str = "hidden_fault.csv";
-const BENCH: &str = "hidden_fault.bench.toml";
-
-fn folder() -> Folder {
-    let folder = Folder::new();
-    for name in [RECORD, BENCH] {
-        folder.put_example(name);
-    }
-    folder
-}
+use crate::folder::{BENCH, Folder, RECORD, hidden_fault as folder, repository_argument};
 
 #[test]
 fn a_run_is_planned_from_a_diagnosis() {
     let folder = folder();
     folder.put("d.json", hidden_fault());
-    let arguments = [
-        "plan",
-        RECORD,
-        "--bench",
-        BENCH,
-        "--diagnosis",
-        "d.json",
-        "--hours",
-        "24",
-        "--limits",
-        "y=-80..80",
-        "--sigma",
-        "gyro_x.g_x=1e-4",
-        "--json",
-        "p.json",
-    ];
+    let arguments = format!(
+        "plan {RECORD} --bench {BENCH} --diagnosis d.json --hours 24 --limits y=-80..80 --sigma gyro_x.g_x=1e-4 --json p.json"
+    );
     let said = folder.succeed(&arguments);
     assert!(
         said.contains("Recommended next run: 24 h from platform angles x"),

@@ -1,20 +1,9 @@
 //! `gyrocal report` and `--report` as a user runs them.
 
-use crate::folder::Folder;
-
-const RECORD: &str = "hidden_fault.csv";
-const BENCH: &str = "hidden_fault.bench.toml";
-
-fn folder() -> Folder {
-    let folder = Folder::new();
-    for name in [RECORD, BENCH] {
-        folder.put_example(name);
-    }
-    folder
-}
+use crate::folder::{BENCH, CommandLine, Folder, RECORD, hidden_fault as folder};
 
 /// Runs a command whose command line is wrong; returns stderr.
-fn wrong_usage(folder: &Folder, arguments: &[&str]) -> String {
+fn wrong_usage(folder: &Folder, arguments: impl CommandLine) -> String {
     let output = folder.run(arguments);
     assert_eq!(output.status.code(), Some(2));
     String::from_utf8(output.stderr).unwrap()
@@ -98,24 +87,7 @@ fn reports_of_a_diagnosis_a_result_and_a_plan() {
     let unlisted = format!("gyro_y.g_z: probability {:.1} %", 100.0 * none);
     assert_page(&folder, "r.html", &[&unlisted]);
 
-    folder.succeed(&[
-        "plan",
-        RECORD,
-        "--bench",
-        BENCH,
-        "--diagnosis",
-        "d.json",
-        "--hours",
-        "24",
-        "--aim",
-        "sigmas",
-        "--json",
-        "p.json",
-        "--report",
-        "p.html",
-        "--figures",
-        "pictures",
-    ]);
+    folder.succeed(&format!("plan {RECORD} --bench {BENCH} --diagnosis d.json --hours 24 --aim sigmas --json p.json --report p.html --figures pictures"));
     assert_picture(&folder, "pictures/proposals.svg", &["Proposals"]);
     assert_page(&folder, "p.html", &["<h1>NEXT RUN</h1>"]);
 
@@ -127,18 +99,9 @@ fn reports_of_a_diagnosis_a_result_and_a_plan() {
 #[test]
 fn reports_of_a_calibration() {
     let folder = folder();
-    let said = folder.succeed(&[
-        "calibrate",
-        RECORD,
-        "--bench",
-        BENCH,
-        "--report",
-        "c.html",
-        "--json",
-        "c.json",
-        "--figures",
-        "pictures",
-    ]);
+    let said = folder.succeed(&format!(
+        "calibrate {RECORD} --bench {BENCH} --report c.html --json c.json --figures pictures"
+    ));
     for name in ["residual", "convergence", "coefficients"] {
         assert_picture(&folder, &format!("pictures/{name}.svg"), &["gyro"]);
     }
@@ -170,17 +133,9 @@ fn reports_of_a_calibration() {
 fn reports_and_pictures_of_many_runs_and_of_a_noise() {
     let folder = folder();
     folder.put_example("hidden_fault.scenario.toml");
-    let arguments = [
-        "monte-carlo",
-        "hidden_fault.scenario.toml",
-        "--seeds",
-        "0..2",
-        "--report",
-        "m.html",
-        "--figures",
-        "runs",
-    ];
-    let said = folder.succeed(&arguments);
+    let arguments =
+        "monte-carlo hidden_fault.scenario.toml --seeds 0..2 --report m.html --figures runs";
+    let said = folder.succeed(arguments);
     assert!(said.contains("m.html: the report"), "{said}");
     let words = ["runs in their band", "gyro_x.bias", "seeds 0 to 1"];
     assert_page(&folder, "m.html", &words);
@@ -193,8 +148,8 @@ fn reports_and_pictures_of_many_runs_and_of_a_noise() {
 
     let rows = (0..2000_u32).map(|row| format!("{}\n", row.wrapping_mul(2_654_435_761) >> 8));
     folder.put("l.csv", "rate\n".to_owned() + &rows.collect::<String>());
-    let line = "allan l.csv --columns rate --rate-hz 10 --report a.html --figures noise";
-    folder.succeed(&line.split(' ').collect::<Vec<_>>());
+    let allan = "allan l.csv --columns rate --rate-hz 10 --report a.html --figures noise";
+    folder.succeed(allan);
     assert_page(&folder, "a.html", &["averaging time"]);
     assert_picture(
         &folder,
@@ -215,14 +170,9 @@ fn assert_picture(folder: &Folder, name: &str, words: &[&str]) {
 #[test]
 fn a_report_that_cannot_be_written_is_told_before_the_work() {
     let folder = folder();
-    let refused = folder.fail(&[
-        "diagnose",
-        RECORD,
-        "--bench",
-        BENCH,
-        "--report",
-        "nowhere/r.html",
-    ]);
+    let refused = folder.fail(&format!(
+        "diagnose {RECORD} --bench {BENCH} --report nowhere/r.html"
+    ));
     assert!(refused.contains("nowhere/r.html"), "{refused}");
     assert!(!folder.path("nowhere").exists());
     let refused = wrong_usage(
@@ -274,21 +224,7 @@ fn an_uncertainty_budget_of_two_runs_conforms_to_its_schema() {
     let rivals = ["rivals.csv", "--bench-out", "rivals.bench.toml"];
     let simulate = ["simulate", "rivals.scenario.toml", "--out"];
     folder.succeed_as_is(&[&simulate[..], &rivals].concat());
-    let output = folder.run_on_a_terminal(&[
-        "report",
-        "rivals.csv",
-        "three_days.csv",
-        "--bench",
-        "rivals.bench.toml",
-        "--bench",
-        "three_days.bench.toml",
-        "--uncertainty",
-        "--json",
-        "budget.json",
-        "--verbose",
-        "--out",
-        "u.html",
-    ]);
+    let output = folder.run_on_a_terminal("report rivals.csv three_days.csv --bench rivals.bench.toml --bench three_days.bench.toml --uncertainty --json budget.json --verbose --out u.html");
     assert_eq!(output.status.code(), Some(0));
     let said = String::from_utf8(output.stdout).unwrap();
     crate::contract::assert_conforms(&folder, &["report", "--json", "budget.json"]);
@@ -331,14 +267,7 @@ fn an_uncertainty_budget_of_two_runs_conforms_to_its_schema() {
 
     // A record is one run, also under another name.
     folder.put("copy.csv", folder.text("rivals.csv"));
-    let twice = folder.fail(&[
-        "report",
-        "rivals.csv",
-        "copy.csv",
-        "--bench",
-        "rivals.bench.toml",
-        "--uncertainty",
-    ]);
+    let twice = folder.fail("report rivals.csv copy.csv --bench rivals.bench.toml --uncertainty");
     assert!(
         twice.contains("copy.csv: found 1081 consecutive rows that rivals.csv has too"),
         "{twice}"

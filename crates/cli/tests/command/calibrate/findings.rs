@@ -25,13 +25,13 @@ fn an_azimuth_is_found_near_a_pole_though_gravity_tells_it_slowly() {
 #[test]
 fn the_sigmas_include_a_declared_latitude_sigma_through_its_sensitivity() {
     let folder = folder();
-    folder.succeed(&JSON);
+    folder.succeed(JSON);
     let known = report(&folder);
     let sigma_deg = 0.001;
     let declared = format!("latitude_deg = 48.2\nlatitude_sigma_deg = {sigma_deg}");
     let bench = example("three_days.bench.toml").replace("latitude_deg = 48.2", &declared);
     folder.put("b.toml", bench);
-    let said = unwrapped(&folder.succeed(&JSON));
+    let said = unwrapped(&folder.succeed(JSON));
     let considered = report(&folder);
     let site = &considered.site;
     let latitude = site
@@ -67,12 +67,12 @@ fn the_sigmas_include_a_declared_latitude_sigma_through_its_sensitivity() {
 #[test]
 fn a_bias_of_latitude_is_what_another_latitude_gives() {
     let folder = folder();
-    folder.succeed(&JSON);
+    folder.succeed(JSON);
     let first = report(&folder);
     let error_deg = 2e-4;
     let bench = example("three_days.bench.toml").replace("48.2", &format!("{}", 48.2 - error_deg));
     folder.put("b.toml", bench);
-    folder.succeed(&JSON);
+    folder.succeed(JSON);
     let second = report(&folder);
     let site = &first.site;
     let latitude = site
@@ -98,7 +98,7 @@ fn noise_is_told_beside_the_declared_unless_it_is_not_wanted() {
     let folder = folder();
     let doubled = example("three_days.bench.toml").replace("accel_g = 1e-5", "accel_g = 2e-5");
     folder.put("b.toml", doubled);
-    let said = unwrapped(&folder.succeed(&JSON));
+    let said = unwrapped(&folder.succeed(JSON));
     assert!(
         said.contains("The innovations are smaller than the declared noise"),
         "{said}"
@@ -113,9 +113,7 @@ fn noise_is_told_beside_the_declared_unless_it_is_not_wanted() {
         assert!((0.475..0.525).contains(&accel.ratio), "{accel:?}");
         assert!(accel.interval[0] < accel.ratio && accel.ratio < accel.interval[1]);
     }
-    let mut arguments = JSON.to_vec();
-    arguments.push("--no-noise");
-    let said = folder.succeed(&arguments);
+    let said = folder.succeed(format!("{JSON} --no-noise"));
     assert!(!said.contains("Estimated over declared noise"), "{said}");
     assert_eq!(report(&folder).runs[0].noise, None);
 }
@@ -123,7 +121,7 @@ fn noise_is_told_beside_the_declared_unless_it_is_not_wanted() {
 #[test]
 fn an_attitude_that_is_not_given_is_found() {
     let folder = folder();
-    folder.succeed(&JSON);
+    folder.succeed(JSON);
     let given = report(&folder);
     let bench = example("three_days.bench.toml");
     let free: Vec<&str> = bench
@@ -131,7 +129,7 @@ fn an_attitude_that_is_not_given_is_found() {
         .filter(|line| !line.contains("initial"))
         .collect();
     folder.put("b.toml", free.join("\n"));
-    let said = unwrapped(&folder.succeed(&JSON));
+    let said = unwrapped(&folder.succeed(JSON));
     let found = report(&folder);
     let azimuth = found.runs[0].azimuth.unwrap();
     assert!(azimuth.starts > 1 && !azimuth.ambiguous, "{azimuth:?}");
@@ -178,18 +176,8 @@ fn two_records_are_one_calibration() {
         .filter(|line| !line.contains("initial"))
         .collect();
     folder.put("free.toml", free.join("\n"));
-    let arguments = [
-        "calibrate",
-        "one.csv",
-        "two.csv",
-        "--bench",
-        "b.toml",
-        "--bench",
-        "free.toml",
-        "--json",
-        "o.json",
-    ];
-    let said = folder.succeed(&arguments);
+    let arguments = "calibrate one.csv two.csv --bench b.toml --bench free.toml --json o.json";
+    let said = folder.succeed(arguments);
     let both = report(&folder);
     assert_eq!((both.rows, both.runs.len()), (3000, 2));
     assert_eq!(
@@ -218,14 +206,7 @@ fn two_records_are_one_calibration() {
         // As of the whole record above.
         assert!(error.abs() < 4.0, "{name}: {error} sigmas");
     }
-    folder.succeed(&[
-        "calibrate",
-        "one.csv",
-        "--bench",
-        "b.toml",
-        "--json",
-        "o.json",
-    ]);
+    folder.succeed("calibrate one.csv --bench b.toml --json o.json");
     for (coefficient, sigma) in report(&folder).coefficients.iter().zip(&alone) {
         assert_eq!(coefficient.sigma, *sigma);
     }
@@ -234,7 +215,7 @@ fn two_records_are_one_calibration() {
     let prior = "\n[prior]\nturn_on_sigma_deg_per_h = 0.01\n";
     folder.put("b.toml", bench.clone() + prior);
     folder.put("free.toml", free.join("\n") + prior);
-    let said = folder.succeed(&arguments);
+    let said = folder.succeed(arguments);
     let turned = report(&folder);
     for run in &turned.runs {
         for turn_on in run.turn_on.unwrap() {
@@ -258,7 +239,7 @@ fn bounded_influence_withstands_outliers() {
         // Ten sigmas, of one sign: a mean would feel it.
         record.accel_g[row][row % 3] += 1e-4;
     }
-    folder.succeed(&JSON);
+    folder.succeed(JSON);
     let clean = report(&folder);
     record.write(&folder.path("r.csv")).unwrap();
     let errors = |report: &CalibrationReport| -> f64 {
@@ -267,11 +248,9 @@ fn bounded_influence_withstands_outliers() {
             .map(|(one, other)| ((one.estimate - other.estimate) / other.sigma).powi(2))
             .sum()
     };
-    folder.succeed(&JSON);
+    folder.succeed(JSON);
     let trusting = report(&folder);
-    let mut arguments = JSON.to_vec();
-    arguments.push("--robust");
-    let said = unwrapped(&folder.succeed(&arguments));
+    let said = unwrapped(&folder.succeed(format!("{JSON} --robust")));
     let robust = report(&folder);
     // A quarter at least; a third of the limit stays of ten sigmas, a ninth in squares.
     assert!(
@@ -299,9 +278,7 @@ fn fast_records_are_averaged() {
         .replace("interval_s = 60.0", "interval_s = 5.0")
         .replace("accel_g = 1e-5", "accel_g = 3e-5");
     folder.simulate(&scenario);
-    let mut arguments = JSON.to_vec();
-    arguments.extend(["--average", "60"]);
-    let said = unwrapped(&folder.succeed(&arguments));
+    let said = unwrapped(&folder.succeed(format!("{JSON} --average 60")));
     let report = report(&folder);
     // A last row by itself is no mean.
     assert!(
@@ -326,15 +303,10 @@ fn fast_records_are_averaged() {
 #[test]
 fn one_pass_of_the_filter_is_there_on_request() {
     let folder = folder();
-    folder.succeed(&JSON);
+    folder.succeed(JSON);
     let batch = report(&folder);
-    for form in [None, Some("--factorised")] {
-        let arguments: Vec<&str> = JSON
-            .into_iter()
-            .chain(["--streaming"])
-            .chain(form)
-            .collect();
-        let said = folder.succeed(&arguments);
+    for form in ["", "--factorised"] {
+        let said = folder.succeed(format!("{JSON} --streaming {form}"));
         let streaming = report(&folder);
         assert_eq!(streaming.method, CalibrationMethod::Streaming);
         assert_eq!(streaming.iterations, 1);
@@ -359,7 +331,7 @@ fn one_pass_of_the_filter_is_there_on_request() {
 fn what_a_short_record_does_not_determine_is_named() {
     let folder = folder();
     folder.put("r.csv", cut(0, 40));
-    let said = unwrapped(&folder.succeed(&JSON));
+    let said = unwrapped(&folder.succeed(JSON));
     let report = report(&folder);
     assert!(!report.undetermined.is_empty());
     for combination in &report.undetermined {
@@ -384,11 +356,7 @@ fn given_effects_are_in_the_model() {
     let folder = Folder::new();
     folder.put("r.csv", example("hidden_fault.csv"));
     folder.put("b.toml", example("hidden_fault.bench.toml"));
-    let with = |effects| {
-        JSON.into_iter()
-            .chain(["--with", effects])
-            .collect::<Vec<_>>()
-    };
+    let with = |effects: &str| format!("{JSON} --with {effects}");
     let said = folder.succeed(&with("gyro_y.g_z"));
     assert!(
         said.contains("with gyro_y.g_z") && said.contains("Effects in the model, which gain"),

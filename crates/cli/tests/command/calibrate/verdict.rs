@@ -20,7 +20,7 @@ fn hidden_fault() -> Folder {
 #[test]
 fn a_fault_that_the_diagnosis_finds_is_told_with_its_probability() {
     let folder = hidden_fault();
-    let said = unwrapped(&folder.succeed(&JSON));
+    let said = unwrapped(&folder.succeed(JSON));
     assert!(
         said.contains(
             "The record shows an effect that the model lacks: the coefficients may be biased. The record shows \
@@ -56,7 +56,7 @@ fn a_fault_that_the_diagnosis_finds_is_told_with_its_probability() {
 #[test]
 fn a_record_that_fits_is_told_as_such_with_what_to_run_next() {
     let folder = folder();
-    let said = unwrapped(&folder.succeed(&JSON));
+    let said = unwrapped(&folder.succeed(JSON));
     assert!(
         said.contains("no effect of the catalogue is significant, innovations white."),
         "{said}"
@@ -85,7 +85,7 @@ fn noise_that_is_declared_too_small_is_no_effect() {
     let bench = example("three_days.bench.toml").replace("deg_per_h = 0.002", "deg_per_h = 0.0008");
     assert_ne!(bench, example("three_days.bench.toml"));
     folder.put("b.toml", bench);
-    folder.succeed(&JSON);
+    folder.succeed(JSON);
     let found = report(&folder);
     assert_eq!(found.verdict, FitVerdict::TooLarge, "{:?}", found.effects);
 }
@@ -96,7 +96,7 @@ fn coefficients_that_mean_nothing_are_not_tabled() {
     // A hundredth of the noise that the record has.
     let bench = example("three_days.bench.toml").replace("accel_g = 1e-5", "accel_g = 1e-7");
     folder.put("b.toml", bench);
-    let output = folder.run(&JSON);
+    let output = folder.run(JSON);
     assert_eq!(output.status.code(), Some(1));
     let said = unwrapped(&String::from_utf8(output.stdout).unwrap());
     assert!(said.contains("the coefficients are not usable"), "{said}");
@@ -116,7 +116,7 @@ fn calibrated(hidden: &str) -> (String, CalibrationReport) {
         "{}\n{hidden}",
         example("three_days.scenario.toml")
     ));
-    let said = unwrapped(&folder.succeed(&JSON));
+    let said = unwrapped(&folder.succeed(JSON));
     (said, report(&folder))
 }
 

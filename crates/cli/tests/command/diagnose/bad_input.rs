@@ -234,16 +234,9 @@ fn a_result_that_cannot_be_written_is_told_before_the_record_is_read() {
 fn a_folder_that_cannot_be_is_refused() {
     let folder = folder();
     folder.put("taken", "");
-    let errors = folder.fail(&[
-        "diagnose",
-        RECORD,
-        "--bench",
-        BENCH,
-        "--json",
-        "o.json",
-        "--figures",
-        "taken",
-    ]);
+    let errors = folder.fail(&format!(
+        "diagnose {RECORD} --bench {BENCH} --json o.json --figures taken"
+    ));
     assert!(
         errors.contains("--figures taken: cannot be made"),
         "{errors}"

@@ -5,7 +5,7 @@ use gyrocal_design::PlanResult;
 use gyrocal_truth::{Coefficients, Hidden, InitialAttitude, Scenario};
 
 use super::report;
-use crate::folder::Folder;
+use crate::folder::{CommandLine, Folder};
 
 /// Two records of a day with a mass unbalance, `a.csv` and `b.csv`, each with its bench file.
 fn folder() -> Folder {
@@ -30,7 +30,7 @@ fn folder() -> Folder {
 }
 
 /// The message of a command line that cannot be.
-fn refused(folder: &Folder, arguments: &[&str]) -> String {
+fn refused(folder: &Folder, arguments: impl CommandLine) -> String {
     let output = folder.run(arguments);
     let errors = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(2), "{errors}");
@@ -40,19 +40,7 @@ fn refused(folder: &Folder, arguments: &[&str]) -> String {
 #[test]
 fn two_records_are_told_together_and_alone() {
     let folder = folder();
-    let said = folder.succeed(&[
-        "diagnose",
-        "a.csv",
-        "b.csv",
-        "--bench",
-        "a.bench.toml",
-        "--bench",
-        "b.bench.toml",
-        "--json",
-        "o.json",
-        "--report",
-        "o.html",
-    ]);
+    let said = folder.succeed("diagnose a.csv b.csv --bench a.bench.toml --bench b.bench.toml --json o.json --report o.html");
     assert!(said.contains("2 records together (a.csv, b.csv)"), "{said}");
     assert!(said.contains("one size in all records"), "{said}");
     assert!(said.contains("Each record alone:"), "{said}");
@@ -117,15 +105,7 @@ fn a_run_is_planned(folder: &Folder) {
     // In another order they are other records.
     let said = folder.fail(&with(&["b.csv", "a.csv"], &[]));
     assert!(said.contains("a diagnosis of another record"), "{said}");
-    let one = [
-        "plan",
-        "a.csv",
-        "--bench",
-        "a.bench.toml",
-        "--diagnosis",
-        "o.json",
-    ];
-    let said = refused(folder, &one);
+    let said = refused(folder, "plan a.csv --bench a.bench.toml --diagnosis o.json");
     assert!(
         said.contains("o.json is a result of 2 records, and one is given"),
         "{said}"
