@@ -9,7 +9,7 @@ use std::fs;
 use gyrocal_answer::{Answer, Verdict};
 use gyrocal_record::{CalibrationReport, FitVerdict, SetupProblem};
 
-use crate::folder::{Folder, example};
+use crate::folder::{Folder, assert_says, example};
 
 const JSON: &str = "calibrate r.csv --bench b.toml --json o.json";
 
@@ -38,11 +38,6 @@ fn with_line(rows: usize, line: usize, replacement: &str) -> String {
     let mut lines: Vec<&str> = whole.lines().collect();
     lines[line - 1] = replacement;
     lines.join("\n") + "\n"
-}
-
-#[track_caller]
-fn assert_says(errors: &str, message: &str) {
-    assert!(errors.contains(message), "{message}\nis not in\n{errors}");
 }
 
 #[test]
@@ -114,7 +109,7 @@ fn wrong_setup(record: impl AsRef<[u8]>, bench: impl AsRef<[u8]>) -> (String, Se
     folder.put("r.csv", record);
     folder.put("b.toml", bench);
     let errors = folder.fail_writing(JSON, &["o.json"]);
-    let mut report: CalibrationReport = serde_json::from_str(&folder.text("o.json")).unwrap();
+    let mut report: CalibrationReport = folder.json("o.json");
     assert_eq!(report.verdict, FitVerdict::Setup);
     assert!(report.coefficients.is_empty() && report.nis_mean.is_none());
     assert_eq!(report.setup.len(), 1, "{:?}", report.setup);
@@ -123,8 +118,8 @@ fn wrong_setup(record: impl AsRef<[u8]>, bench: impl AsRef<[u8]>) -> (String, Se
     assert_says(&errors, "o.json: the result for programs");
     assert!(problem.stops);
     // The diagnosis says the same.
-    folder.succeed(&["diagnose", "r.csv", "--bench", "b.toml", "--json", "d.json"]);
-    let diagnosis: Answer = serde_json::from_str(&folder.text("d.json")).unwrap();
+    folder.succeed("diagnose r.csv --bench b.toml --json d.json");
+    let diagnosis: Answer = folder.json("d.json");
     assert_eq!(diagnosis.verdict, Verdict::Setup);
     assert_eq!(diagnosis.setup, std::slice::from_ref(&problem));
     (errors, problem)
@@ -204,14 +199,14 @@ fn an_axis_in_another_unit_is_corrected_told_and_used() {
     folder.put("b.toml", bench());
     let said = folder.succeed(JSON);
     assert_says(&said.replace('\n', " "), "Its unit seems to be m/s^2.");
-    let report: CalibrationReport = serde_json::from_str(&folder.text("o.json")).unwrap();
+    let report: CalibrationReport = folder.json("o.json");
     assert_eq!(report.setup.len(), 1);
     assert_eq!(
         (&*report.setup[0].kind, report.setup[0].stops),
         ("scale", false)
     );
-    folder.succeed(&["diagnose", "r.csv", "--bench", "b.toml", "--json", "d.json"]);
-    let diagnosis: Answer = serde_json::from_str(&folder.text("d.json")).unwrap();
+    folder.succeed("diagnose r.csv --bench b.toml --json d.json");
+    let diagnosis: Answer = folder.json("d.json");
     assert_eq!(diagnosis.setup, report.setup);
     assert!(diagnosis.coefficients.is_some());
 }
@@ -246,18 +241,18 @@ fn a_temperature_in_kelvins_is_told_with_its_lines_and_converted() {
     let said = folder.succeed(JSON).replace('\n', " ");
     assert_says(&said, "It seems to be in K");
     assert_says(&said, "r.csv:2-301");
-    let report: CalibrationReport = serde_json::from_str(&folder.text("o.json")).unwrap();
+    let report: CalibrationReport = folder.json("o.json");
     let [problem] = &report.setup[..] else {
         panic!("{:?}", report.setup)
     };
     assert_eq!((&*problem.kind, problem.stops), ("temperature", false));
     assert_eq!(problem.lines, Some([2, 301]));
-    folder.succeed(&["diagnose", "r.csv", "--bench", "b.toml", "--json", "d.json"]);
-    let told: Answer = serde_json::from_str(&folder.text("d.json")).unwrap();
+    folder.succeed("diagnose r.csv --bench b.toml --json d.json");
+    let told: Answer = folder.json("d.json");
     assert_eq!(told.setup, report.setup);
     folder.put("r.csv", with(0.0));
     folder.succeed(JSON);
-    let report: CalibrationReport = serde_json::from_str(&folder.text("o.json")).unwrap();
+    let report: CalibrationReport = folder.json("o.json");
     assert_eq!(report.setup, []);
 }
 
@@ -331,7 +326,7 @@ fn bad_bench_files_are_shown_where_they_are_wrong() {
         assert_eq!(good.matches(right).count(), 1, "{right}");
         let errors = refused(record(20), good.replace(right, wrong));
         assert_says(&errors, message);
-        assert!(errors.contains("here"), "{errors}");
+        assert_says(&errors, "here");
     }
     let errors = refused(record(20), "");
     assert_says(
@@ -355,7 +350,7 @@ fn an_output_that_cannot_be_written_is_named() {
     folder.put("b.toml", bench());
     fs::create_dir(folder.path("taken")).unwrap();
     for path in ["no/such/folder/o.json", "taken"] {
-        let errors = folder.fail(&["calibrate", "r.csv", "--bench", "b.toml", "--json", path]);
+        let errors = folder.fail(["calibrate", "r.csv", "--bench", "b.toml", "--json", path]);
         assert_says(&errors, &format!("{path}: cannot be written: "));
     }
 }

@@ -1,6 +1,6 @@
 //! Records of other programs: `--columns`, `import csv`, and tables of results.
 
-use crate::folder::{Folder, example};
+use crate::folder::{Folder, assert_says, example};
 
 const MAP: &str = "[file]\ndelimiter = \"semicolon\"\ndecimal = \"comma\"\n[time]\ncolumn = \"Zeit\"\n\
                    unit = \"min\"\n[accel]\ncolumns = [\"aX\", \"aY\", \"aZ\"]\nunit = \"mg\"\n";
@@ -43,7 +43,7 @@ fn a_mapped_record_has_the_coefficients_of_the_record() {
         // Units were converted there and back: the last bits of samples differ, with noise of 1e-5 g.
         assert!((a - b).abs() < 1e-6 * sigma, "{mapped:?} {plain:?}");
     }
-    let json: serde_json::Value = serde_json::from_str(&folder.text("mapped.json")).unwrap();
+    let json: serde_json::Value = folder.json("mapped.json");
     assert_eq!(json["manifest"]["inputs"][2]["path"], "map.toml");
 }
 
@@ -57,7 +57,7 @@ fn a_pipe_is_read_once_and_whole() {
         let all = format!("calibrate {record} --bench b.toml --json r.json --coefficients {table}");
         let output = folder.run_with_stdin(all, "three_days.csv");
         assert!(output.status.success(), "{output:?}");
-        let json: serde_json::Value = serde_json::from_str(&folder.text("r.json")).unwrap();
+        let json: serde_json::Value = folder.json("r.json");
         let hash = json["manifest"]["inputs"][0]["sha256"].clone();
         (folder.text(table), hash)
     };
@@ -70,7 +70,7 @@ fn a_pipe_is_read_once_and_whole() {
 #[test]
 fn a_record_without_its_map_is_refused_with_one() {
     let folder = folder();
-    let errors = folder.fail(&["diagnose", "l.csv", "--bench", "b.toml"]);
+    let errors = folder.fail("diagnose l.csv --bench b.toml");
     let command = "gyrocal import csv l.csv --propose MAP.toml";
     let told = errors
         .split_whitespace()
@@ -83,10 +83,8 @@ fn a_record_without_its_map_is_refused_with_one() {
     );
     // Followed to the letter.
     let proposed = folder.succeed(command.trim_start_matches("gyrocal "));
-    assert!(
-        proposed.contains("MAP PROPOSED") && proposed.contains("4321 rows"),
-        "{proposed}"
-    );
+    assert_says(&proposed, "MAP PROPOSED");
+    assert_says(&proposed, "4321 rows");
     for line in ["unit = \"mg\"", "unit = \"min\"", "decimal = \"comma\""] {
         assert!(
             folder.text("MAP.toml").contains(line),
@@ -98,13 +96,11 @@ fn a_record_without_its_map_is_refused_with_one() {
     folder.put("map.toml", MAP.replace("decimal = \"comma\"\n", ""));
     let arguments = "diagnose l.csv --bench b.toml --columns map.toml";
     let errors = folder.fail(arguments);
-    assert!(errors.contains("`decimal = \"comma\"`"), "{errors}");
+    assert_says(&errors, "`decimal = \"comma\"`");
     folder.put("map.toml", MAP.replace("aZ", "az"));
     let errors = folder.fail(arguments);
-    assert!(
-        errors.contains("a column `az`") && errors.contains("Zeit, aX, aY, aZ"),
-        "{errors}"
-    );
+    assert_says(&errors, "a column `az`");
+    assert_says(&errors, "Zeit, aX, aY, aZ");
 }
 
 #[test]
@@ -112,10 +108,10 @@ fn an_imported_record_is_read_by_every_command() {
     let folder = folder();
     let import = "import csv l.csv --columns map.toml --out r.csv";
     let text = folder.succeed(import);
-    assert!(text.contains("4321 rows"), "{text}");
-    folder.succeed(&["calibrate", "r.csv", "--bench", "b.toml", "--no-noise"]);
+    assert_says(&text, "4321 rows");
+    folder.succeed("calibrate r.csv --bench b.toml --no-noise");
     let errors = folder.fail(format!("{import} --average 60"));
-    assert!(errors.contains("calibrate --average"), "{errors}");
+    assert_says(&errors, "calibrate --average");
 }
 
 #[test]
@@ -138,15 +134,15 @@ fn a_clock_that_begins_again_is_split_to_the_letter() {
     folder.put("FREE.toml", &bench);
     folder.forget_attitude("FREE.toml");
     for command in ["diagnose", "calibrate"] {
-        let said = folder.run(&[command, "logged.csv", "--bench", "BENCH.toml"]);
+        let said = folder.run([command, "logged.csv", "--bench", "BENCH.toml"]);
         let said = [said.stdout, said.stderr]
             .map(|text| String::from_utf8(text).unwrap())
             .concat();
         let said = said.split_whitespace().collect::<Vec<_>>().join(" ");
-        assert!(said.contains("logged.csv:2002"), "{said}");
-        assert!(
-            said.contains("gyrocal import csv logged.csv --split --out PART.csv"),
-            "{said}"
+        assert_says(&said, "logged.csv:2002");
+        assert_says(
+            &said,
+            "gyrocal import csv logged.csv --split --out PART.csv",
         );
     }
     let answer = folder.succeed("import csv logged.csv --split --out PART.csv");

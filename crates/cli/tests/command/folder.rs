@@ -6,6 +6,7 @@ use std::process::Output;
 
 use assert_cmd::Command;
 use gyrocal_truth::Scenario;
+use serde::de::DeserializeOwned;
 use tempfile::TempDir;
 
 use crate::contract::assert_conforms;
@@ -112,6 +113,11 @@ impl Folder {
             .unwrap();
     }
 
+    /// A written result.
+    pub(crate) fn json<T: DeserializeOwned>(&self, name: &str) -> T {
+        serde_json::from_str(&self.text(name)).unwrap()
+    }
+
     pub(crate) fn text(&self, name: &str) -> String {
         fs::read_to_string(self.path(name)).unwrap()
     }
@@ -188,6 +194,11 @@ impl Folder {
         assert_eq!(errors.matches('×').count(), 1, "{errors}");
         errors
     }
+}
+
+#[track_caller]
+pub(crate) fn assert_says(said: &str, words: &str) {
+    assert!(said.contains(words), "{words}\nis not in\n{said}");
 }
 
 /// The example with a hidden fault.

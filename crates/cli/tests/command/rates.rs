@@ -55,7 +55,7 @@ fn a_bias_of_degrees_a_second_is_told_within_earth_rate() {
     let folder = folder(log(25.0, |_, z| z));
     let text = folder.succeed(ARGUMENTS);
     assert!(text.contains("gyro_x.bias"), "{text}");
-    let json: serde_json::Value = serde_json::from_str(&folder.text("o.json")).unwrap();
+    let json: serde_json::Value = folder.json("o.json");
     let log = &json["logs"][0];
     let bias = log["bias_deg_per_h"][0].as_f64().unwrap();
     let half_width = log["bias_half_width_deg_per_h"][0].as_f64().unwrap();

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::folder::{Folder, repository};
+use crate::folder::{Folder, assert_says, repository};
 
 pub(crate) const SCENARIO: &str = "\
 seed = 1
@@ -42,7 +42,7 @@ fn record_bench_and_truth_are_written() {
     assert_eq!(folder.names(), ["b.toml", "r.csv", "s.toml", "t.json"]);
     assert_eq!(folder.text("r.csv").lines().count(), 62);
     assert!(folder.text("b.toml").contains("latitude_deg = 39.1\n"));
-    let truth: serde_json::Value = serde_json::from_str(&folder.text("t.json")).unwrap();
+    let truth: serde_json::Value = folder.json("t.json");
     assert_eq!(truth["schema_version"], 1);
     assert_eq!(truth["coefficients"][4]["name"], "gyro_y.g_y");
     assert_eq!(truth["coefficients"][4]["value"], 0.2);
@@ -77,14 +77,14 @@ size = 1e-4
     let (record, other) = (faulty.text("r.csv"), clean.text("r.csv"));
     assert_ne!(record, other);
     assert!(record.starts_with("time_s,accel_x_g,accel_y_g,accel_z_g,temperature_c\n"));
-    let truth: serde_json::Value = serde_json::from_str(&faulty.text("t.json")).unwrap();
+    let truth: serde_json::Value = faulty.json("t.json");
     assert_eq!(truth["rows"], 61);
     assert_eq!(truth["hidden"][0]["effect"], "gyro_y.g_z");
     assert_eq!(
         truth["hidden"][0]["parameters"],
         serde_json::json!([{ "name": "size", "value": 0.35, "unit": "deg/h/g" }])
     );
-    let truth: serde_json::Value = serde_json::from_str(&clean.text("t.json")).unwrap();
+    let truth: serde_json::Value = clean.json("t.json");
     assert_eq!(truth["hidden"], serde_json::json!([]));
 }
 
@@ -110,9 +110,9 @@ fn the_seed_decides_and_nothing_else() {
     let first = folder.text("r.csv");
     folder.succeed(PLAIN);
     assert_eq!(folder.text("r.csv"), first);
-    folder.succeed(&["simulate", "s.toml", "--out", "r.csv", "--seed", "2"]);
+    folder.succeed("simulate s.toml --out r.csv --seed 2");
     assert_ne!(folder.text("r.csv"), first);
-    folder.succeed(&["simulate", "s.toml", "--out", "r.csv", "--seed", "1"]);
+    folder.succeed("simulate s.toml --out r.csv --seed 1");
     assert_eq!(folder.text("r.csv"), first);
 }
 
@@ -121,7 +121,7 @@ fn the_record_that_ships_is_what_its_scenario_gives() {
     let folder = Folder::new();
     let scenario = repository("examples/data/three_days.scenario.toml");
     let scenario = scenario.to_str().unwrap();
-    folder.succeed(&[
+    folder.succeed([
         "simulate",
         scenario,
         "--out",
@@ -196,16 +196,13 @@ fn a_scenario_that_is_not_text_is_refused() {
     let folder = Folder::new();
     folder.put("s.toml", b"seed = 1\n# caf\xe9\n");
     let errors = folder.fail(PLAIN);
-    assert!(
-        errors.contains("s.toml:2:6: found byte 0xE9, expected UTF-8 text"),
-        "{errors}"
-    );
+    assert_says(&errors, "s.toml:2:6: found byte 0xE9, expected UTF-8 text");
 }
 
 #[test]
 fn a_scenario_that_is_not_there_is_named() {
     let errors = Folder::new().fail(PLAIN);
-    assert!(errors.contains("s.toml: cannot be read: "), "{errors}");
+    assert_says(&errors, "s.toml: cannot be read: ");
 }
 
 #[test]
@@ -213,14 +210,11 @@ fn an_output_that_cannot_be_written_leaves_no_other() {
     let folder = folder();
     fs::create_dir(folder.path("taken")).unwrap();
     for path in ["no/such/folder/t.json", "taken"] {
-        let errors = folder.fail(&["simulate", "s.toml", "--out", "r.csv", "--json", path]);
-        assert!(
-            errors.contains(&format!("{path}: cannot be written: ")),
-            "{errors}"
-        );
+        let errors = folder.fail(["simulate", "s.toml", "--out", "r.csv", "--json", path]);
+        assert_says(&errors, &format!("{path}: cannot be written: "));
     }
     folder.put("r.csv", "old");
-    folder.fail(&["simulate", "s.toml", "--out", "r.csv", "--json", "taken"]);
+    folder.fail("simulate s.toml --out r.csv --json taken");
     assert_eq!(folder.text("r.csv"), "old");
 }
 
@@ -246,7 +240,7 @@ fn a_wrong_command_line_is_a_usage_error() {
 fn verbose_tells_more_on_stderr_only() {
     let folder = folder();
     let quiet = folder.run(PLAIN);
-    let verbose = folder.run(&["-vv", "simulate", "s.toml", "--out", "r.csv"]);
+    let verbose = folder.run("-vv simulate s.toml --out r.csv");
     assert!(quiet.stderr.is_empty());
     assert!(
         String::from_utf8(verbose.stderr)
@@ -269,5 +263,5 @@ fn an_answer_that_cannot_be_told_is_a_failure() {
         .unwrap();
     assert_eq!(output.status.code(), Some(1));
     let errors = String::from_utf8(output.stderr).unwrap();
-    assert!(errors.contains("stdout: cannot be written"), "{errors}");
+    assert_says(&errors, "stdout: cannot be written");
 }

@@ -2,8 +2,8 @@
 
 use gyrocal_record::CalibrationReport;
 
-use super::{JSON, assert_says, bench, record};
-use crate::folder::Folder;
+use super::{JSON, bench, record};
+use crate::folder::{Folder, assert_says};
 
 /// Arguments of one pass, in either form.
 fn one_pass(form: &str) -> String {
@@ -44,7 +44,7 @@ fn a_gyro_noise_out_of_proportion_is_told() {
     // From 1e-10 on, the linearised cost is rounding error.
     folder.put("b.toml", bench().replace("= 0.002", "= 1e-12"));
     for command in ["calibrate", "diagnose"] {
-        let errors = folder.fail(&[command, "r.csv", "--bench", "b.toml"]);
+        let errors = folder.fail([command, "r.csv", "--bench", "b.toml"]);
         assert_says(&errors, "no shorter step fits");
         assert_says(&errors, "`gyro_deg_per_h` in [noise] is out of proportion");
     }
@@ -57,7 +57,7 @@ fn a_fit_on_a_flat_cost_ends_at_the_values_of_a_larger_noise() {
     let [coarse, fine] = ["= 1e-7", "= 1e-9"].map(|noise| {
         folder.put("b.toml", bench().replace("= 0.002", noise));
         folder.succeed(JSON);
-        let report: CalibrationReport = serde_json::from_str(&folder.text("o.json")).unwrap();
+        let report: CalibrationReport = folder.json("o.json");
         report.coefficients
     });
     assert_eq!(coarse.len(), 9);

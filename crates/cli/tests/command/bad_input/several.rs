@@ -2,8 +2,8 @@
 
 use gyrocal_truth::{Coefficients, InitialAttitude, Scenario};
 
-use super::{JSON, assert_says, bench, record};
-use crate::folder::Folder;
+use super::{JSON, bench, record};
+use crate::folder::{Folder, assert_says};
 
 #[test]
 fn rows_that_two_records_share_are_refused() {
@@ -17,7 +17,7 @@ fn rows_that_two_records_share_are_refused() {
         .collect();
     folder.put("b.csv", later.join("\n"));
     folder.put("b.toml", bench());
-    let errors = folder.fail(&["calibrate", "a.csv", "b.csv", "--bench", "b.toml"]);
+    let errors = folder.fail("calibrate a.csv b.csv --bench b.toml");
     assert_says(
         &errors,
         "b.csv: found 40 consecutive rows that a.csv has too, from row 1 of the data \
@@ -25,7 +25,7 @@ fn rows_that_two_records_share_are_refused() {
     );
     // A copy by another name is the same record.
     folder.put("b.csv", record(100));
-    let errors = folder.fail(&["calibrate", "a.csv", "b.csv", "--bench", "b.toml"]);
+    let errors = folder.fail("calibrate a.csv b.csv --bench b.toml");
     assert_says(
         &errors,
         "b.csv: found 100 consecutive rows that a.csv has too",
@@ -49,7 +49,7 @@ fn the_record_that_fails_is_named_alone_with_advice_of_its_own() {
     folder.put("b.csv", later.join("\n"));
     folder.put("b.toml", bench());
     folder.forget_attitude("b.toml");
-    let errors = folder.fail(&["calibrate", "a.csv", "b.csv", "--bench", "b.toml"]);
+    let errors = folder.fail("calibrate a.csv b.csv --bench b.toml");
     assert_says(&errors, "× b.csv: no calibration");
     assert_says(&errors, "record 2 of 2 cannot be calibrated");
     assert_says(&errors, "the platform cannot be levelled");

@@ -4,7 +4,7 @@ use gyrocal_record::{CalibrationMethod, CalibrationReport, FitVerdict, Record};
 
 use super::{JSON, folder, report, truth, unwrapped};
 use crate::diagnose;
-use crate::folder::{Folder, example};
+use crate::folder::{Folder, assert_says, example};
 
 #[test]
 fn an_azimuth_is_found_near_a_pole_though_gravity_tells_it_slowly() {
@@ -12,13 +12,10 @@ fn an_azimuth_is_found_near_a_pole_though_gravity_tells_it_slowly() {
     let scenario = example("three_days.scenario.toml");
     folder.simulate(&scenario.replace("latitude_deg = 48.2", "latitude_deg = 89.0"));
     folder.forget_attitude("b.toml");
-    let said = unwrapped(&folder.succeed(&["calibrate", "r.csv", "--bench", "b.toml"]));
-    assert!(
-        said.contains("Data, model and declared noise agree."),
-        "{said}"
-    );
-    assert!(said.contains("no other azimuth fits"), "{said}");
-    let said = folder.succeed(&["diagnose", "r.csv", "--bench", "b.toml"]);
+    let said = unwrapped(&folder.succeed("calibrate r.csv --bench b.toml"));
+    assert_says(&said, "Data, model and declared noise agree.");
+    assert_says(&said, "no other azimuth fits");
+    let said = folder.succeed("diagnose r.csv --bench b.toml");
     assert!(said.starts_with("NO FAULT FOUND"), "{said}");
 }
 
@@ -56,12 +53,12 @@ fn the_sigmas_include_a_declared_latitude_sigma_through_its_sensitivity() {
             after.name
         );
     }
-    assert!(said.contains("Latitude is known to 3.600 arcsec"), "{said}");
+    assert_says(&said, "Latitude is known to 3.600 arcsec");
     // Of 3.0 arc seconds.
     let told = latitude.from_record_sigma.unwrap();
     assert!((2.0..4.0).contains(&(3600.0 * told)), "{told}");
-    assert!(said.contains("better than declared"), "{said}");
-    assert!(said.contains("latitude +3.600 arcsec (1 sigma)"), "{said}");
+    assert_says(&said, "better than declared");
+    assert_says(&said, "latitude +3.600 arcsec (1 sigma)");
 }
 
 #[test]
@@ -99,14 +96,8 @@ fn noise_is_told_beside_the_declared_unless_it_is_not_wanted() {
     let doubled = example("three_days.bench.toml").replace("accel_g = 1e-5", "accel_g = 2e-5");
     folder.put("b.toml", doubled);
     let said = unwrapped(&folder.succeed(JSON));
-    assert!(
-        said.contains("The innovations are smaller than the declared noise"),
-        "{said}"
-    );
-    assert!(
-        said.contains("accel_x (smaller), accel_y (smaller)"),
-        "{said}"
-    );
+    assert_says(&said, "The innovations are smaller than the declared noise");
+    assert_says(&said, "accel_x (smaller), accel_y (smaller)");
     let noise = report(&folder).runs[0].noise.unwrap();
     for accel in noise.accel {
         // 4321 samples tell a standard deviation to 1.1 %.
@@ -150,9 +141,9 @@ fn an_attitude_that_is_not_given_is_found() {
         // Five times the error of 0.01 deg that the scenario drew about these.
         assert!((one - declared).abs() < 0.05, "{one} {declared}");
     }
-    assert!(
-        said.contains("not declared. Levelled by the first samples, azimuth from a search over"),
-        "{said}"
+    assert_says(
+        &said,
+        "not declared. Levelled by the first samples, azimuth from a search over",
     );
 }
 
@@ -186,11 +177,11 @@ fn two_records_are_one_calibration() {
     );
     assert!(both.runs[0].azimuth.is_none() && both.runs[1].azimuth.is_some());
     assert_eq!(both.verdict, FitVerdict::Consistent);
-    assert!(
-        said.contains("\none.csv: 1500 rows over 1.04 days\n\ntwo.csv: 1500 rows"),
-        "{said}"
+    assert_says(
+        &said,
+        "\none.csv: 1500 rows over 1.04 days\n\ntwo.csv: 1500 rows",
     );
-    assert!(said.contains("first record alone"), "{said}");
+    assert_says(&said, "first record alone");
     // What it proposes is a command that runs.
     let next = said.lines().find(|line| line.contains("gyrocal diagnose"));
     let (next, _) = next.unwrap().split_once("#").unwrap();
@@ -225,9 +216,9 @@ fn two_records_are_one_calibration() {
     }
     // 0.01 deg/h over the root of two turn-ons.
     assert!((turned.coefficients[0].sigma / 7.07e-3 - 1.0).abs() < 0.02);
-    assert!(
-        said.contains("Offsets of the turn-ons from the mean constant drifts"),
-        "{said}"
+    assert_says(
+        &said,
+        "Offsets of the turn-ons from the mean constant drifts",
     );
 }
 
@@ -262,11 +253,9 @@ fn bounded_influence_withstands_outliers() {
     // 45 outliers and 0.27 % of 12 963 good values.
     let bounded = robust.runs[0].bounded_values;
     assert!((60..110).contains(&bounded), "{bounded}");
-    assert!(
-        said.contains(&format!(
-            "Robust estimation: reduced weight of {bounded} values"
-        )),
-        "{said}"
+    assert_says(
+        &said,
+        &format!("Robust estimation: reduced weight of {bounded} values"),
     );
 }
 
@@ -281,12 +270,10 @@ fn fast_records_are_averaged() {
     let said = unwrapped(&folder.succeed(format!("{JSON} --average 60")));
     let report = report(&folder);
     // A last row by itself is no mean.
-    assert!(
-        said.contains(
-            "r.csv: 17281 rows over 1.00 days, averaged over 60 s to 1440 means of 0.289 times the \
-             noise; 3 values left out"
-        ),
-        "{said}"
+    assert_says(
+        &said,
+        "r.csv: 17281 rows over 1.00 days, averaged over 60 s to 1440 means of 0.289 times the \
+             noise; 3 values left out",
     );
     assert_eq!(report.rows, 1440);
     assert_eq!(report.verdict, FitVerdict::Consistent);
@@ -311,10 +298,7 @@ fn one_pass_of_the_filter_is_there_on_request() {
         assert_eq!(streaming.method, CalibrationMethod::Streaming);
         assert_eq!(streaming.iterations, 1);
         assert!(streaming.runs.is_empty() && streaming.site.is_empty());
-        assert!(
-            said.contains("The streaming filter takes latitude"),
-            "{said}"
-        );
+        assert_says(&said, "The streaming filter takes latitude");
         for (one, other) in streaming.coefficients.iter().zip(&batch.coefficients) {
             // Linearisation of one pass costs fractions of a sigma.
             assert!(
@@ -344,10 +328,7 @@ fn what_a_short_record_does_not_determine_is_named() {
         // A unit vector, rounded.
         assert!((length - 1.0).abs() < 1e-9 && combination.share_of_prior >= 0.1);
     }
-    assert!(
-        said.contains("Not determined: gyro_x.bias, gyro_x.g_x"),
-        "{said}"
-    );
+    assert_says(&said, "Not determined: gyro_x.bias, gyro_x.g_x");
 }
 
 /// The table of the extended model without a search.
@@ -357,11 +338,9 @@ fn given_effects_are_in_the_model() {
     folder.put("r.csv", example("hidden_fault.csv"));
     folder.put("b.toml", example("hidden_fault.bench.toml"));
     let with = |effects: &str| format!("{JSON} --with {effects}");
-    let said = folder.succeed(&with("gyro_y.g_z"));
-    assert!(
-        said.contains("with gyro_y.g_z") && said.contains("Effects in the model, which gain"),
-        "{said}"
-    );
+    let said = folder.succeed(with("gyro_y.g_z"));
+    assert_says(&said, "with gyro_y.g_z");
+    assert_says(&said, "Effects in the model, which gain");
     let report = report(&folder);
     let given = report.with_effects.unwrap();
     let [effect] = given.effects.as_slice() else {
@@ -392,7 +371,7 @@ fn given_effects_are_in_the_model() {
         ("gyro_x.noise", "is no effect that a model can have"),
         ("gyro_x.temperature", "the record has no column"),
     ] {
-        let said = unwrapped(&folder.fail(&with(effects)));
+        let said = unwrapped(&folder.fail(with(effects)));
         assert!(said.contains(message), "{effects}: {said}");
     }
 }

@@ -8,10 +8,10 @@ const SCENARIO: &str = "hidden_fault.scenario.toml";
 fn a_later_record_tells_what_the_extended_model_wins() {
     let folder = folder();
     folder.put_example(SCENARIO);
-    folder.succeed(&["simulate", SCENARIO, "--seed", "40", "--out", "later.csv"]);
+    folder.succeed(["simulate", SCENARIO, "--seed", "40", "--out", "later.csv"]);
     let command = ["diagnose", RECORD, "--bench", BENCH, "--json", "o.json"];
     let later = ["--validate", "later.csv", "--validate-bench", BENCH];
-    let said = folder.succeed(&[&command[..], &later].concat());
+    let said = folder.succeed([&command[..], &later].concat());
     let report = report(&folder, "o.json");
     assert_eq!(report.manifest.inputs.len(), 4);
     let finding = &report.findings[0];
