@@ -101,133 +101,40 @@ const X0: &str = r#"["input",0,0,0],"#;
 const X1: &str = r#"["input",1,0,1],"#;
 
 #[test]
-#[expect(clippy::too_many_lines, reason = "a table of cases")]
 fn rules_do_what_they_say() {
-    let cases = [
-        // (what, instructions after x0 and x1, result)
-        (
-            "x + 0",
-            r#"["const",2,0],["add",2,0,2],["output",0,0,2]"#,
-            "[x0] }",
-        ),
-        (
-            "1 x",
-            r#"["const",2,1],["mul",2,2,0],["output",0,0,2]"#,
-            "[x0] }",
-        ),
-        (
-            "-(-x)",
-            r#"["neg",2,0],["neg",2,2],["output",0,0,2]"#,
-            "[x0] }",
-        ),
-        (
-            "x0 + (-x1)",
-            r#"["neg",2,1],["add",2,0,2],["output",0,0,2]"#,
-            "[x0 - x1] }",
-        ),
-        (
-            "(-x0) (-x1)",
-            r#"["neg",2,0],["neg",3,1],["mul",2,2,3],["output",0,0,2]"#,
-            "[x0 * x1] }",
-        ),
-        (
-            "-x0 - x1",
-            r#"["neg",2,0],["sub",2,2,1],["output",0,0,2]"#,
-            "[-x0 - x1] }",
-        ),
-        (
-            "-(x0 - x1)",
-            r#"["sub",2,0,1],["neg",2,2],["output",0,0,2]"#,
-            "[x1 - x0] }",
-        ),
-        (
-            "cos(-x)",
-            r#"["neg",2,0],["cos",2,2],["output",0,0,2]"#,
-            "let (_, cos_x0) = x0.sin_cos(); [cos_x0] }",
-        ),
-        (
-            "sin(-x) cos(x)",
-            r#"["neg",2,0],["sin",2,2],["cos",3,0],["mul",2,2,3],["output",0,0,2]"#,
-            "let (sin_x0, cos_x0) = x0.sin_cos(); [-sin_x0 * cos_x0] }",
-        ),
-        ("twice", r#"["twice",2,0],["output",0,0,2]"#, "[x0 + x0] }"),
-        (
-            "2 x",
-            r#"["const",2,2],["mul",2,2,0],["output",0,0,2]"#,
-            "[x0 + x0] }",
-        ),
-        (
-            "x / 4 is exact as a product",
-            r#"["const",2,4],["div",2,0,2],["output",0,0,2]"#,
-            "[x0 * T::from_f64(2.5e-1)] }",
-        ),
-        (
-            "x / 3 is not",
-            r#"["const",2,3],["div",2,0,2],["output",0,0,2]"#,
-            "[x0 / T::from_f64(3e0)] }",
-        ),
-        (
-            "2 + 3",
-            r#"["const",2,2],["const",3,3],["add",2,2,3],["output",0,0,2]"#,
-            "[T::from_f64(5e0)] }",
-        ),
-        (
-            "x^5",
-            r#"["const",2,5],["pow",2,0,2],["output",0,0,2]"#,
-            "let x0_squared = x0 * x0; [x0_squared * x0_squared * x0] }",
-        ),
-        (
-            "x^-1",
-            r#"["const",2,-1],["pow",2,0,2],["output",0,0,2]"#,
-            "[T::from_f64(1e0) / x0] }",
-        ),
-        (
-            "x^0.3",
-            r#"["const",2,0.3],["pow",2,0,2],["output",0,0,2]"#,
-            "[x0.powf(T::from_f64(3e-1))] }",
-        ),
-        (
-            "x - x stays: x may be infinite",
-            r#"["sub",2,0,0],["output",0,0,2]"#,
-            "[x0 - x0] }",
-        ),
-        (
-            "0 x stays",
-            r#"["const",2,0],["mul",2,2,0],["output",0,0,2]"#,
-            "[T::from_f64(0e0) * x0] }",
-        ),
-        (
-            "a + (b + c) needs no parentheses",
-            r#"["mul",2,0,1],["add",2,2,1],["add",2,0,2],["output",0,0,2]"#,
-            "[x0 * x1 + x1 + x0] }",
-        ),
-        (
-            "a - (b + c) needs them",
-            r#"["mul",2,0,1],["add",2,2,1],["sub",2,0,2],["output",0,0,2]"#,
-            "[x0 - (x0 * x1 + x1)] }",
-        ),
-        (
-            "a / (b c) needs them",
-            r#"["mul",2,0,1],["div",2,0,2],["output",0,0,2]"#,
-            "[x0 / (x0 * x1)] }",
-        ),
-        (
-            "(a + b).sqrt()",
-            r#"["add",2,0,1],["sqrt",2,2],["output",0,0,2]"#,
-            "[(x0 + x1).sqrt()] }",
-        ),
-        (
-            "not not (x0 < x1)",
-            r#"["lt",2,0,1],["not",2,2],["not",2,2],["output",0,0,2]"#,
-            "[x0.less(x1)] }",
-        ),
-        ("dead code", r#"["exp",2,0],["output",0,0,1]"#, "[x1] }"),
-    ];
-    for (what, instructions, expected) in cases {
+    // What, the instructions after x0 and x1, and the result.
+    let cases = r#"
+        x + 0 | ["const",2,0],["add",2,0,2],["output",0,0,2] | [x0]
+        1 x | ["const",2,1],["mul",2,2,0],["output",0,0,2] | [x0]
+        -(-x) | ["neg",2,0],["neg",2,2],["output",0,0,2] | [x0]
+        x0 + (-x1) | ["neg",2,1],["add",2,0,2],["output",0,0,2] | [x0 - x1]
+        (-x0) (-x1) | ["neg",2,0],["neg",3,1],["mul",2,2,3],["output",0,0,2] | [x0 * x1]
+        -x0 - x1 | ["neg",2,0],["sub",2,2,1],["output",0,0,2] | [-x0 - x1]
+        -(x0 - x1) | ["sub",2,0,1],["neg",2,2],["output",0,0,2] | [x1 - x0]
+        cos(-x) | ["neg",2,0],["cos",2,2],["output",0,0,2] | let (_, cos_x0) = x0.sin_cos(); [cos_x0]
+        sin(-x) cos(x) | ["neg",2,0],["sin",2,2],["cos",3,0],["mul",2,2,3],["output",0,0,2] | let (sin_x0, cos_x0) = x0.sin_cos(); [-sin_x0 * cos_x0]
+        twice | ["twice",2,0],["output",0,0,2] | [x0 + x0]
+        2 x | ["const",2,2],["mul",2,2,0],["output",0,0,2] | [x0 + x0]
+        x / 4 is exact as a product | ["const",2,4],["div",2,0,2],["output",0,0,2] | [x0 * T::from_f64(2.5e-1)]
+        x / 3 is not | ["const",2,3],["div",2,0,2],["output",0,0,2] | [x0 / T::from_f64(3e0)]
+        2 + 3 | ["const",2,2],["const",3,3],["add",2,2,3],["output",0,0,2] | [T::from_f64(5e0)]
+        x^5 | ["const",2,5],["pow",2,0,2],["output",0,0,2] | let x0_squared = x0 * x0; [x0_squared * x0_squared * x0]
+        x^-1 | ["const",2,-1],["pow",2,0,2],["output",0,0,2] | [T::from_f64(1e0) / x0]
+        x^0.3 | ["const",2,0.3],["pow",2,0,2],["output",0,0,2] | [x0.powf(T::from_f64(3e-1))]
+        x - x stays: x may be infinite | ["sub",2,0,0],["output",0,0,2] | [x0 - x0]
+        0 x stays | ["const",2,0],["mul",2,2,0],["output",0,0,2] | [T::from_f64(0e0) * x0]
+        a + (b + c) needs no parentheses | ["mul",2,0,1],["add",2,2,1],["add",2,0,2],["output",0,0,2] | [x0 * x1 + x1 + x0]
+        a - (b + c) needs them | ["mul",2,0,1],["add",2,2,1],["sub",2,0,2],["output",0,0,2] | [x0 - (x0 * x1 + x1)]
+        a / (b c) needs them | ["mul",2,0,1],["div",2,0,2],["output",0,0,2] | [x0 / (x0 * x1)]
+        (a + b).sqrt() | ["add",2,0,1],["sqrt",2,2],["output",0,0,2] | [(x0 + x1).sqrt()]
+        not not (x0 < x1) | ["lt",2,0,1],["not",2,2],["not",2,2],["output",0,0,2] | [x0.less(x1)]
+        dead code | ["exp",2,0],["output",0,0,1] | [x1]
+    "#;
+    for case in cases.trim().lines() {
+        let [what, instructions, expected] =
+            [0, 1, 2].map(|column| case.split('|').nth(column).unwrap().trim());
         let result = body(2, 1, &format!("{X0}{X1}{instructions}"));
-        let result = result
-            .split_once("] }")
-            .map_or(result.clone(), |(start, _)| format!("{start}] }}"));
+        let (result, _) = result.split_once(" }").unwrap();
         assert_eq!(result, expected, "{what}");
     }
 }

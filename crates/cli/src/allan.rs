@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use gyrocal_instruments::{
     AllanReport, AllanSettings, Description, InstrumentError, Log, ResultFile, allan_columns,
     allan_log,
@@ -12,7 +12,7 @@ use gyrocal_record::SourceText;
 use gyrocal_statistics::allan::AllanEstimator;
 
 use crate::measured::unusable;
-use crate::numbers::{positive, probability};
+use crate::numbers::{Choice, one_of, positive, probability};
 use crate::outputs::manifest;
 use crate::page::Views;
 use crate::{Failure, Reply};
@@ -57,8 +57,13 @@ pub(crate) struct AllanArguments {
     #[arg(long, value_name = "P", default_value_t = 0.683, value_parser = probability)]
     confidence: f64,
     /// Estimator of the printed deviations; the coefficients are fitted to the samples.
-    #[arg(long, value_name = "ESTIMATOR", default_value = "overlapping")]
-    estimator: Estimator,
+    #[arg(
+        long,
+        value_name = "ESTIMATOR",
+        default_value = "overlapping",
+        value_parser = one_of(ESTIMATORS)
+    )]
+    estimator: AllanEstimator,
     /// Write the result for programs (JSON), with the fitted curve and its parts for a plot.
     #[arg(long, value_name = "OUT.json")]
     json: Option<PathBuf>,
@@ -66,26 +71,24 @@ pub(crate) struct AllanArguments {
     views: Views,
 }
 
-/// Value of `--estimator`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Estimator {
-    /// Overlapping Allan deviation.
-    Overlapping,
-    /// Total deviation: more degrees of freedom at the longest averaging times.
-    Total,
-    /// Overlapping Hadamard deviation: a ramp of the rate does not enter it.
-    Hadamard,
-}
-
-impl Estimator {
-    fn of_library(self) -> AllanEstimator {
-        match self {
-            Self::Overlapping => AllanEstimator::Overlapping,
-            Self::Total => AllanEstimator::Total,
-            Self::Hadamard => AllanEstimator::Hadamard,
-        }
-    }
-}
+/// Values of `--estimator`.
+const ESTIMATORS: &[Choice<AllanEstimator>] = &[
+    (
+        "overlapping",
+        "Overlapping Allan deviation",
+        AllanEstimator::Overlapping,
+    ),
+    (
+        "total",
+        "Total deviation: more degrees of freedom at the longest averaging times",
+        AllanEstimator::Total,
+    ),
+    (
+        "hadamard",
+        "Overlapping Hadamard deviation: a ramp of the rate does not enter it",
+        AllanEstimator::Hadamard,
+    ),
+];
 
 /// Runs the command; returns the text for stdout.
 pub(crate) fn run(arguments: &AllanArguments) -> Result<Reply, Failure> {
@@ -107,14 +110,14 @@ fn analysed(arguments: &AllanArguments) -> Result<(AllanReport, Option<String>),
     let report = |unit: &str, columns| AllanReport {
         unit: unit.to_owned(),
         confidence: arguments.confidence,
-        estimator: arguments.estimator.of_library().description(),
+        estimator: arguments.estimator.description(),
         columns,
     };
     let settings = |rate_hz: f64, scale: f64| AllanSettings {
         rate_hz,
         scale,
         confidence: arguments.confidence,
-        estimator: arguments.estimator.of_library(),
+        estimator: arguments.estimator,
     };
     let Some(path) = &arguments.log_description else {
         let names: Vec<&str> = arguments.columns.iter().map(String::as_str).collect();

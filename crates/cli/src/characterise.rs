@@ -12,7 +12,7 @@ use gyrocal_evaluation::{
     BaselineMethod, CellReport, CharacteriseReport, PopulationCell, cell_campaign, cell_report,
 };
 use gyrocal_pages::of_characterise;
-use gyrocal_record::{SCHEMA_VERSION, printable_path};
+use gyrocal_record::SCHEMA_VERSION;
 use miette::miette;
 
 use crate::monte_carlo::progress::SeedProgress;
@@ -157,10 +157,10 @@ fn report(
 }
 
 fn unusable(folder: &Path, reason: &std::io::Error) -> Failure {
-    Failure::Work(miette!(
-        "{}: the results cannot be kept there: {reason}",
-        printable_path(folder)
-    ))
+    Failure::of(
+        folder,
+        format_args!("the results cannot be kept there: {reason}"),
+    )
 }
 
 fn cell(name: &str) -> Result<PopulationCell, String> {

@@ -6,10 +6,11 @@ use clap::{CommandFactory as _, FromArgMatches, Parser, Subcommand};
 use gyrocal_record::printable_line;
 
 use crate::plant::PlantCli;
+use crate::reply::Reply;
 use crate::terminal::{Shown, color_of};
 use crate::{
-    allan, calibrate, characterise, diagnose, effects, emit, exit, extend, help, import, manual,
-    monte_carlo, plan, plant, rates, report, simulate, tumble, watch,
+    Failure, allan, calibrate, characterise, diagnose, effects, emit, exit, extend, help, import,
+    manual, monte_carlo, plan, plant, rates, report, simulate, tumble, watch,
 };
 
 /// Calibration and diagnosis of gyro drift of inertially stabilised platforms.
@@ -26,27 +27,45 @@ pub(crate) struct Cli {
     pub(crate) command: Option<Command>,
 }
 
-#[derive(Debug, Subcommand)]
-pub(crate) enum Command {
-    Allan(allan::AllanArguments),
-    Calibrate(calibrate::CalibrateArguments),
-    Characterise(characterise::CharacteriseArguments),
-    Completions(manual::CompletionsArguments),
-    Diagnose(diagnose::DiagnoseArguments),
-    Effects(effects::EffectsArguments),
-    Emit(emit::EmitArguments),
-    Extend(extend::ExtendArguments),
-    Import(import::ImportArguments),
-    Man(manual::ManArguments),
-    MonteCarlo(monte_carlo::MonteCarloArguments),
-    NewPlant(plant::NewPlantArguments),
-    Plan(plan::PlanArguments),
-    Plant(plant::PlantArguments),
-    Rates(rates::RatesArguments),
-    Report(report::ReportArguments),
-    Simulate(simulate::SimulateArguments),
-    Tumble(tumble::TumbleArguments),
-    Watch(watch::WatchArguments),
+/// The commands, each with its arguments and what runs it.
+macro_rules! commands {
+    ($($name:ident($arguments:ty) => $run:expr,)+) => {
+        #[derive(Debug, Subcommand)]
+        pub(crate) enum Command {
+            $($name($arguments),)+
+        }
+
+        impl Command {
+            /// Runs the command.
+            pub(crate) fn run(&self) -> Result<Reply, Failure> {
+                match self {
+                    $(Self::$name(arguments) => $run(arguments),)+
+                }
+            }
+        }
+    };
+}
+
+commands! {
+    Allan(allan::AllanArguments) => allan::run,
+    Calibrate(calibrate::CalibrateArguments) => calibrate::run,
+    Characterise(characterise::CharacteriseArguments) => characterise::run,
+    Completions(manual::CompletionsArguments) => manual::completions,
+    Diagnose(diagnose::DiagnoseArguments) => diagnose::run,
+    Effects(effects::EffectsArguments) => effects::run,
+    Emit(emit::EmitArguments) => emit::run,
+    Extend(extend::ExtendArguments) => extend::run,
+    Import(import::ImportArguments) => import::run,
+    Man(manual::ManArguments) => manual::pages,
+    MonteCarlo(monte_carlo::MonteCarloArguments) => monte_carlo::run,
+    NewPlant(plant::NewPlantArguments) => plant::run_new,
+    Plan(plan::PlanArguments) => plan::run,
+    Plant(plant::PlantArguments) => plant::run,
+    Rates(rates::RatesArguments) => rates::run,
+    Report(report::ReportArguments) => report::run,
+    Simulate(simulate::SimulateArguments) => simulate::run,
+    Tumble(tumble::TumbleArguments) => tumble::run,
+    Watch(watch::WatchArguments) => watch::run,
 }
 
 /// The definition of the command line, with examples and exit codes: that of its parser, its help, its

@@ -5,7 +5,7 @@ mod several;
 
 use std::path::{Path, PathBuf};
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use gyrocal::generated::MODEL_HASH;
 use gyrocal_answer::{Answer, Verdict};
 use gyrocal_calibration::CalibrationError;
@@ -15,7 +15,7 @@ use gyrocal_diagnosis::{
 use gyrocal_pages::{of_diagnosis, of_result};
 use gyrocal_record::{Bench, InputRole};
 
-use crate::numbers::probability;
+use crate::numbers::{Choice, one_of, probability};
 use crate::outputs::{manifest_of, refuse_itself, write_answer};
 use crate::page::{self, Views};
 use crate::progress::Progress;
@@ -67,29 +67,27 @@ pub(crate) struct DiagnoseArguments {
     #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = probability)]
     false_alarm: f64,
     /// Also test the consistency of this filter.
-    #[arg(long, value_enum, conflicts_with = "gyro_axes")]
-    filter: Option<Filter>,
+    #[arg(long, value_parser = one_of(FILTERS), conflicts_with = "gyro_axes")]
+    filter: Option<TestedFilter>,
     /// Exit with 3 if effects were found, with 4 if the residuals are unexplained, with 5 if the
     /// set-up is wrong.
     #[arg(long)]
     exit_code: bool,
 }
 
-/// A filter that can be tested.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Filter {
-    /// The paper's: Euler angles as states, one Euler step a sample.
-    Euler,
-}
+/// Filters that can be tested.
+const FILTERS: &[Choice<TestedFilter>] = &[(
+    "euler",
+    "The paper's: Euler angles as states, one Euler step a sample",
+    TestedFilter::Euler,
+)];
 
 impl DiagnoseArguments {
     fn options(&self) -> DiagnoseOptions {
         DiagnoseOptions {
             false_alarm_probability: self.false_alarm,
             also: self.effects.clone(),
-            filter: self.filter.map(|filter| match filter {
-                Filter::Euler => TestedFilter::Euler,
-            }),
+            filter: self.filter,
             ..DiagnoseOptions::default()
         }
     }

@@ -2,13 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use gyrocal_diagnosis::known_effects;
 use gyrocal_document::{Screen, Standing};
 use gyrocal_emit::{Emission, Extension, Number};
 use gyrocal_record::{ModelFile, SourceText, module_name, printable_path};
 use miette::Report;
 
+use crate::numbers::{Choice, one_of};
 use crate::outputs::refuse_overlap;
 use crate::{Failure, Reply};
 
@@ -26,37 +27,25 @@ pub(crate) struct EmitArguments {
     #[arg(long, value_name = "NAME.rs", requires = "model")]
     module: Option<PathBuf>,
     /// Number type.
-    #[arg(long, value_enum, default_value_t = NumberArgument::F32)]
-    number: NumberArgument,
+    #[arg(long, value_parser = one_of(NUMBERS), default_value = "f32")]
+    number: Number,
     /// Write the file (Rust).
     #[arg(long, value_name = "FILTER.rs")]
     out: PathBuf,
 }
 
-/// Number type of the filter.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum NumberArgument {
-    /// Single precision.
-    F32,
-    /// Double precision.
-    F64,
-}
-
-impl From<NumberArgument> for Number {
-    fn from(number: NumberArgument) -> Self {
-        match number {
-            NumberArgument::F32 => Self::F32,
-            NumberArgument::F64 => Self::F64,
-        }
-    }
-}
+/// Number types of a filter.
+const NUMBERS: &[Choice<Number>] = &[
+    ("f32", "Single precision", Number::F32),
+    ("f64", "Double precision", Number::F64),
+];
 
 /// Runs the command; returns the text for stdout.
 pub(crate) fn run(arguments: &EmitArguments) -> Result<Reply, Failure> {
     let files = [&arguments.model, &arguments.module];
     let inputs: Vec<&Path> = files.into_iter().flatten().map(PathBuf::as_path).collect();
     refuse_overlap(&inputs, &[("--out", Some(&arguments.out))])?;
-    let number = Number::from(arguments.number);
+    let number = arguments.number;
     let extended = match (&arguments.model, &arguments.module) {
         (Some(model), Some(module)) => {
             let text = SourceText::read(module)?.text().to_owned();

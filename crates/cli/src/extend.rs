@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use gyrocal::generated::MODEL_HASH;
 use gyrocal_answer::read_platform;
 use gyrocal_diagnosis::{
@@ -12,6 +12,7 @@ use gyrocal_document::{Screen, Standing};
 use gyrocal_record::{ExtensionReport, Gyros, SCHEMA_VERSION, printable_path};
 use miette::MietteDiagnostic;
 
+use crate::numbers::{Choice, one_of};
 use crate::outputs::{manifest, refuse_overlap};
 use crate::{Failure, Reply};
 
@@ -29,8 +30,8 @@ pub(crate) struct ExtendArguments {
     #[arg(long, value_name = "ID,ID", value_delimiter = ',')]
     effects: Option<Vec<String>>,
     /// What the gyros of the listed effects are fixed to; a diagnosis says it itself.
-    #[arg(long, value_enum, default_value_t = GyrosArgument::Platform, conflicts_with = "diagnosis")]
-    gyros: GyrosArgument,
+    #[arg(long, value_parser = one_of(GYROS), default_value = "platform", conflicts_with = "diagnosis")]
+    gyros: Gyros,
     /// Members of the confidence sets to take in the place of the effects that the diagnosis names; without
     /// initial values, which the diagnosis gives for the named ones only.
     #[arg(
@@ -49,22 +50,18 @@ pub(crate) struct ExtendArguments {
 }
 
 /// What gyros are fixed to.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum GyrosArgument {
-    /// The platform that they stabilise.
-    Platform,
-    /// A body: a platform is computed from their outputs.
-    Strapdown,
-}
-
-impl From<GyrosArgument> for Gyros {
-    fn from(gyros: GyrosArgument) -> Self {
-        match gyros {
-            GyrosArgument::Platform => Self::Platform,
-            GyrosArgument::Strapdown => Self::Strapdown,
-        }
-    }
-}
+const GYROS: &[Choice<Gyros>] = &[
+    (
+        "platform",
+        "The platform that they stabilise",
+        Gyros::Platform,
+    ),
+    (
+        "strapdown",
+        "A body: a platform is computed from their outputs",
+        Gyros::Strapdown,
+    ),
+];
 
 /// Runs the command; returns the text for stdout.
 pub(crate) fn run(arguments: &ExtendArguments) -> Result<Reply, Failure> {
@@ -82,7 +79,7 @@ pub(crate) fn run(arguments: &ExtendArguments) -> Result<Reply, Failure> {
         }
         None => {
             let listed = arguments.effects.as_deref().unwrap_or_default();
-            extension_by(listed, arguments.gyros.into())
+            extension_by(listed, arguments.gyros)
                 .map_err(|error| not_extended("--effects", &error))?
         }
     };

@@ -52,7 +52,8 @@ use std::path::Path;
 
 use gyrocal_document::Words;
 use gyrocal_plant::{LoadedPlant, PlantError};
-use miette::Report;
+use gyrocal_record::printable_path;
+use miette::{Report, miette};
 
 pub use crate::calibrate::NotCalibrated;
 use crate::command::{Cli, Command, definition};
@@ -172,33 +173,15 @@ fn shown(how: &Shown, answer: Result<Reply, Failure>) -> u8 {
 
 /// The answer of a command; without one, what people do first.
 fn answer(command: Option<&Command>) -> Result<Reply, Failure> {
-    let Some(command) = command else {
-        return Ok(Reply {
-            exit_code: exit::USAGE,
-            ..Reply::from(help::WELCOME.to_owned())
-        });
-    };
-    match command {
-        Command::Allan(arguments) => allan::run(arguments),
-        Command::Calibrate(arguments) => calibrate::run(arguments),
-        Command::Characterise(arguments) => characterise::run(arguments),
-        Command::Completions(arguments) => Ok(manual::completions(arguments, definition()).into()),
-        Command::Diagnose(arguments) => diagnose::run(arguments),
-        Command::Effects(arguments) => effects::run(arguments),
-        Command::Emit(arguments) => emit::run(arguments),
-        Command::Extend(arguments) => extend::run(arguments),
-        Command::Import(arguments) => import::run(arguments),
-        Command::Man(arguments) => manual::pages(arguments, definition()),
-        Command::MonteCarlo(arguments) => monte_carlo::run(arguments),
-        Command::NewPlant(arguments) => plant::run_new(arguments),
-        Command::Plan(arguments) => plan::run(arguments),
-        Command::Plant(arguments) => plant::run(arguments),
-        Command::Rates(arguments) => rates::run(arguments),
-        Command::Report(arguments) => report::run(arguments),
-        Command::Simulate(arguments) => simulate::run(arguments),
-        Command::Tumble(arguments) => tumble::run(arguments),
-        Command::Watch(arguments) => watch::run(arguments),
-    }
+    command.map_or_else(
+        || {
+            Ok(Reply {
+                exit_code: exit::USAGE,
+                ..Reply::from(help::WELCOME.to_owned())
+            })
+        },
+        Command::run,
+    )
 }
 
 /// Failure of a command.
@@ -208,6 +191,13 @@ enum Failure {
     Usage(String),
     /// An input is wrong or an output cannot be written.
     Work(Report),
+}
+
+impl Failure {
+    /// What is wrong with a file, in a sentence of which its path is the beginning.
+    fn of(path: &Path, why: impl std::fmt::Display) -> Self {
+        Self::Work(miette!("{}: {why}", printable_path(path)))
+    }
 }
 
 impl From<gyrocal_record::Error> for Failure {

@@ -11,6 +11,7 @@ use gyrocal_record::{Outputs, printable_path};
 use miette::miette;
 
 use crate::Failure;
+use crate::command::definition;
 use crate::reply::Reply;
 
 /// Print the completions of a shell.
@@ -28,15 +29,15 @@ pub(crate) struct ManArguments {
     folder: PathBuf,
 }
 
-/// Runs `gyrocal completions` of a definition of the command line; returns the completions.
-pub(crate) fn completions(arguments: &CompletionsArguments, mut definition: Command) -> String {
+/// Runs `gyrocal completions`; returns the completions.
+pub(crate) fn completions(arguments: &CompletionsArguments) -> Result<Reply, Failure> {
     let mut script = Vec::new();
-    clap_complete::generate(arguments.shell, &mut definition, "gyrocal", &mut script);
-    String::from_utf8_lossy(&script).into_owned()
+    clap_complete::generate(arguments.shell, &mut definition(), "gyrocal", &mut script);
+    Ok(String::from_utf8_lossy(&script).into_owned().into())
 }
 
 /// Runs `gyrocal man`: writes all pages or none.
-pub(crate) fn pages(arguments: &ManArguments, mut definition: Command) -> Result<Reply, Failure> {
+pub(crate) fn pages(arguments: &ManArguments) -> Result<Reply, Failure> {
     let folder = &arguments.folder;
     let refused = |reason: std::io::Error| {
         Failure::Work(miette!(
@@ -46,6 +47,7 @@ pub(crate) fn pages(arguments: &ManArguments, mut definition: Command) -> Result
         ))
     };
     std::fs::create_dir_all(folder).map_err(refused)?;
+    let mut definition = definition();
     definition.build();
     let mut outputs = Outputs::new();
     let mut names = Vec::new();

@@ -27,7 +27,7 @@ pub(crate) fn unusable(log: &Path, error: InstrumentError) -> Failure {
             }
             .into(),
         ),
-        other => Failure::Work(miette::miette!("{}: {other}", printable_path(log))),
+        other => Failure::of(log, other),
     }
 }
 

@@ -13,7 +13,7 @@ use gyrocal_evaluation::{
     CalibrationSummary, CalibrationTrial, Campaign, Fingerprint, MonteCarloReport, Outcome, program,
 };
 use gyrocal_pages::of_monte_carlo;
-use gyrocal_record::{SCHEMA_VERSION, printable_path};
+use gyrocal_record::SCHEMA_VERSION;
 use gyrocal_truth::{Population, Scenario};
 use miette::miette;
 
@@ -75,12 +75,11 @@ pub(crate) fn run(arguments: &MonteCarloArguments) -> Result<Reply, Failure> {
     tracing::info!(resumed = outcome.resumed(), "all seeds done");
     let summary = CalibrationSummary::of(&outcome);
     if let (0, Some(failure)) = (summary.runs, summary.failures.first()) {
-        return Err(Failure::Work(miette!(
-            "{}: no run gave a calibration; seed {}: {}",
-            printable_path(&arguments.scenario),
-            failure.seed,
-            failure.message
-        )));
+        let (seed, message) = (failure.seed, &failure.message);
+        return Err(Failure::of(
+            &arguments.scenario,
+            format_args!("no run gave a calibration; seed {seed}: {message}"),
+        ));
     }
     let report = MonteCarloReport {
         schema_version: SCHEMA_VERSION,

@@ -6,7 +6,6 @@ use std::sync::{PoisonError, RwLock};
 
 use gyrocal_answer::{Answer, write_text};
 use gyrocal_record::{Error, Input, InputRole, Manifest, Outputs, printable_path, shell_quoted};
-use miette::miette;
 
 use crate::reply::{RESULT, Reply};
 use crate::{Failure, pictures};
@@ -47,8 +46,7 @@ pub(crate) fn write_answer(
     reply: &mut Reply,
 ) -> Result<(), Failure> {
     reply.write(path, RESULT, |path| {
-        write_text(answer)
-            .map_err(|error| Failure::Work(miette!("{}: {error}", printable_path(path))))
+        write_text(answer).map_err(|error| Failure::of(path, error))
     })
 }
 

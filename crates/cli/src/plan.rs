@@ -6,14 +6,14 @@ mod options;
 
 use std::path::{Path, PathBuf};
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use gyrocal::generated::MODEL_HASH;
 use gyrocal_calibration::Run;
 use gyrocal_design::{Aim, PlanOptions, plan};
 use gyrocal_pages::of_plan;
 use gyrocal_record::InputRole;
 
-use crate::numbers::{positive, probability};
+use crate::numbers::{Choice, one_of, positive, probability};
 use crate::outputs::manifest_of;
 use crate::page::Views;
 use crate::progress::Progress;
@@ -55,8 +55,8 @@ pub(crate) struct PlanArguments {
     )]
     limits: Vec<(usize, [f64; 2])>,
     /// Criterion of the ranking; default: set, if a finding has alternatives.
-    #[arg(long, value_enum)]
-    aim: Option<AimArgument>,
+    #[arg(long, value_parser = one_of(AIMS))]
+    aim: Option<Aim>,
     /// Also find the shortest run after which a coefficient has this sigma: gyro_x.g_x=1e-4.
     #[arg(long, value_name = "ID=SIGMA", value_delimiter = ',', value_parser = wished_sigma)]
     sigma: Vec<(String, f64)>,
@@ -79,14 +79,19 @@ impl PlanArguments {
     }
 }
 
-/// Criterion of the ranking.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum AimArgument {
-    /// Expected size of the confidence sets, then the standard deviations.
-    Set,
-    /// Standard deviations of the nine coefficients.
-    Sigmas,
-}
+/// Criteria of the ranking.
+const AIMS: &[Choice<Aim>] = &[
+    (
+        "set",
+        "Expected size of the confidence sets, then the standard deviations",
+        Aim::Set,
+    ),
+    (
+        "sigmas",
+        "Standard deviations of the nine coefficients",
+        Aim::Sigmas,
+    ),
+];
 
 /// Share of the time of a plan that has passed after the diagnosis.
 const DIAGNOSED: f64 = 0.5;
@@ -113,10 +118,7 @@ pub(crate) fn run(arguments: &PlanArguments) -> Result<Reply, Failure> {
     let options = PlanOptions {
         durations_s: durations_s(&arguments.hours),
         limits: limits(&arguments.limits, &known.bench),
-        aim: arguments.aim.map(|aim| match aim {
-            AimArgument::Set => Aim::Set,
-            AimArgument::Sigmas => Aim::Sigmas,
-        }),
+        aim: arguments.aim,
         goal: goal(arguments),
         ..PlanOptions::default()
     };

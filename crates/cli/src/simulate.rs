@@ -6,7 +6,6 @@ use clap::Args;
 use gyrocal_document::{Screen, Standing};
 use gyrocal_record::{printable_path, shell_quoted};
 use gyrocal_truth::{Hidden, Scenario, Simulation, TruthReport, simulate_watched};
-use miette::miette;
 
 use crate::outputs::{manifest, refuse_overlap};
 use crate::progress::Progress;
@@ -56,10 +55,8 @@ pub(crate) fn run(arguments: &SimulateArguments) -> Result<Reply, Failure> {
     }
     tracing::debug!(?scenario, "read");
     let mut progress = Progress::new("simulating", scenario.grid_rows());
-    let simulation =
-        simulate_watched(&scenario, &[], |rows| progress.reach(rows)).map_err(|error| {
-            Failure::Work(miette!("{}: {error}", printable_path(&arguments.scenario)))
-        })?;
+    let simulation = simulate_watched(&scenario, &[], |rows| progress.reach(rows))
+        .map_err(|error| Failure::of(&arguments.scenario, error))?;
     drop(progress);
     tracing::info!(rows = simulation.record.len(), "simulated");
     let mut answer = Reply::of(summary(arguments, &scenario, &simulation), String::new());

@@ -5,7 +5,7 @@ use chacha20::rand_core::SeedableRng;
 use gyrocal_statistics::deviates::polar;
 use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
 
-use crate::joint_unknowns::{ConfidenceSet, Unknown};
+use crate::joint_unknowns::{ConfidenceSet, Unknown, with_priors};
 use crate::result::SetForecast;
 use crate::run_information::RunInformation;
 use crate::set_comparison::{Comparison, deficits, stays};
@@ -53,14 +53,7 @@ impl Posteriors {
                 let mut places = case.nuisance.clone();
                 places.extend(&member.places);
                 let count = places.len();
-                let inner = DMatrix::from_fn(count, count, |i, j| {
-                    let prior = if i == j {
-                        unknowns[places[i]].sigma.powi(-2)
-                    } else {
-                        0.0
-                    };
-                    information.information[(places[i], places[j])] + prior
-                });
+                let inner = with_priors(&information.information, unknowns, &places);
                 let cholesky = Cholesky::new(inner)?;
                 let score = DVector::from_fn(count, |i, _| information.score[places[i]]);
                 Some(Posterior {

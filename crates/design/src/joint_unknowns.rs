@@ -23,6 +23,22 @@ pub(crate) struct Unknown {
     next: Vec<(usize, f64)>,
 }
 
+/// Information on the unknowns in some places, their priors included.
+pub(crate) fn with_priors(
+    information: &DMatrix<f64>,
+    unknowns: &[Unknown],
+    places: &[usize],
+) -> DMatrix<f64> {
+    DMatrix::from_fn(places.len(), places.len(), |i, j| {
+        let prior = if i == j {
+            unknowns[places[i]].sigma.powi(-2)
+        } else {
+            0.0
+        };
+        information[(places[i], places[j])] + prior
+    })
+}
+
 /// A candidate cause with the onset or time constant that fits best in the record.
 #[derive(Clone, Debug)]
 pub(crate) struct Candidate {

@@ -34,7 +34,7 @@ impl NamedCause {
     #[must_use]
     pub fn all(diagnosis: &Answer) -> Vec<Self> {
         let causes = diagnosis.causes();
-        let plannable = causes.filter(|finding| Self::is_cause(&finding.effect));
+        let plannable = causes.filter(|finding| row(&finding.effect).is_ok());
         plannable.map(Self::of).collect()
     }
 
@@ -57,13 +57,6 @@ impl NamedCause {
     /// Whether it is noise of the fit and nothing else: a random walk without rivals.
     pub(crate) fn is_noise(&self) -> bool {
         self.rivals.is_empty() && self.row().is_ok_and(is_walk)
-    }
-
-    /// Whether a run can be planned for an effect: one with a signature.
-    #[must_use]
-    pub fn is_cause(effect: &str) -> bool {
-        let mut effects = EFFECTS.iter();
-        effects.any(|row| row.id == effect && (row.has_signature() || is_walk(row)))
     }
 
     pub(crate) fn row(&self) -> Result<&'static Effect, DesignError> {

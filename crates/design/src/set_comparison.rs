@@ -2,7 +2,7 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-use crate::joint_unknowns::{ConfidenceSet, Member, Unknown};
+use crate::joint_unknowns::{ConfidenceSet, Member, Unknown, with_priors};
 use gyrocal_hypothesis::{CONFIDENCE_SET_DEVIANCE, NESTED_MODEL_CHI2};
 
 use crate::walk_score::WalkScore;
@@ -45,14 +45,7 @@ impl Comparison {
             .collect();
         own.sort_unstable();
         own.dedup();
-        let inner = DMatrix::from_fn(nuisance.len(), nuisance.len(), |i, j| {
-            let prior = if i == j {
-                unknowns[nuisance[i]].sigma.powi(-2)
-            } else {
-                0.0
-            };
-            information[(nuisance[i], nuisance[j])] + prior
-        });
+        let inner = with_priors(information, unknowns, nuisance);
         let cross = DMatrix::from_fn(nuisance.len(), own.len(), |i, j| {
             information[(nuisance[i], own[j])]
         });

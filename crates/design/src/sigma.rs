@@ -4,7 +4,7 @@ use gyrocal::generated::platform::DRIFT;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 use crate::COEFFICIENTS;
-use crate::joint_unknowns::JointUnknowns;
+use crate::joint_unknowns::{JointUnknowns, with_priors};
 use crate::result::Forecast;
 
 /// Of the nine coefficients, then of the sizes of what was named, from the information on all
@@ -23,14 +23,7 @@ pub(crate) fn sigmas(
     estimated.extend(named.iter().flat_map(|member| member.places.iter()));
     estimated.extend(&unknowns.common);
     let count = estimated.len();
-    let inner = DMatrix::from_fn(count, count, |i, j| {
-        let prior = if i == j {
-            unknowns.list[estimated[i]].sigma.powi(-2)
-        } else {
-            0.0
-        };
-        information[(estimated[i], estimated[j])] + prior
-    });
+    let inner = with_priors(information, &unknowns.list, &estimated);
     let cholesky = Cholesky::new(inner)?;
     let mut variance = cholesky.inverse().diagonal();
     for site in unknowns.site {

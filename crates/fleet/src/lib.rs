@@ -74,6 +74,7 @@ pub use answer::{
 };
 pub use error::FleetError;
 
-pub use record::{Coefficient, FleetRecord, RecordName};
+pub use gyrocal_answer::CoefficientEstimate as Coefficient;
+pub use record::{FleetRecord, RecordName};
 pub use score_bytes::{from_bytes, to_bytes};
 pub use summarise::{FleetOptions, summarise};

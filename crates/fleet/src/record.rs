@@ -1,6 +1,6 @@
 //! A diagnosed record, as far as the fleet needs it.
 
-use gyrocal_answer::{Answer, FindingKind, read_platform_text};
+use gyrocal_answer::{Answer, CoefficientEstimate, FindingKind, read_platform_text};
 use gyrocal_hypothesis::ScoreTable;
 use gyrocal_record::SourceText;
 
@@ -25,26 +25,13 @@ pub struct RecordName {
     pub site: Option<String>,
 }
 
-/// A drift coefficient of a record.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Coefficient {
-    /// Its id.
-    pub name: String,
-    /// The estimate, in `unit`.
-    pub estimate: f64,
-    /// Its standard deviation.
-    pub sigma: f64,
-    /// The unit.
-    pub unit: String,
-}
-
 /// A diagnosed record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FleetRecord {
     /// Its name.
     pub name: RecordName,
     /// The coefficients with all accepted causes in the model.
-    pub coefficients: Vec<Coefficient>,
+    pub coefficients: Vec<CoefficientEstimate>,
     /// Causes that the record shows by itself.
     pub causes: Vec<String>,
     /// Whether these are settled: the search came to its end, and left a white rest.
@@ -57,27 +44,20 @@ impl FleetRecord {
     /// Of the result of a diagnosis, and its scores.
     #[must_use]
     pub fn new(name: RecordName, result: &Answer, scores: Option<ScoreTable>) -> Self {
-        let of = |name: &str, estimate, sigma, unit: &str| Coefficient {
-            name: name.to_owned(),
-            estimate,
-            sigma,
-            unit: unit.to_owned(),
-        };
         // Over all members of the confidence sets, where there are causes.
         let coefficients = result
             .coefficients
             .iter()
             .flat_map(|all| match &all.over_set {
+                None => all.best().to_vec(),
                 Some(over_set) => over_set
                     .iter()
-                    .map(|one| of(&one.name, one.estimate, one.sigma, &one.unit))
-                    .collect::<Vec<_>>(),
-                None => all
-                    .extended
-                    .as_ref()
-                    .unwrap_or(&all.nominal)
-                    .iter()
-                    .map(|one| of(&one.name, one.estimate, one.sigma, &one.unit))
+                    .map(|one| CoefficientEstimate {
+                        name: one.name.clone(),
+                        estimate: one.estimate,
+                        sigma: one.sigma,
+                        unit: one.unit.clone(),
+                    })
                     .collect(),
             });
         Self {

@@ -6,8 +6,8 @@ use gyrocal_diagnosis::manifest;
 use gyrocal_hypothesis::ScoreTable;
 
 use crate::answer::{
-    FleetCoefficient, FleetResult, FoundCause, Group, GroupKind, LikelyUnit, OutlierUnit,
-    RecordProblem, RecurringCause, SCHEMA_VERSION, UnitLevel, WithInterval,
+    FleetCoefficient, FleetResult, FoundCause, Group, GroupKind, OutlierUnit, RecordProblem,
+    RecurringCause, SCHEMA_VERSION, UnitLevel, WithInterval,
 };
 use crate::course::{Courses, Estimate, Point, courses};
 use crate::error::FleetError;
@@ -299,27 +299,7 @@ impl<'a> Fleet<'a> {
             seed: options.seed,
             ..RecurrenceOptions::default()
         };
-        let found = recurring(&units, &options).into_iter();
-        found
-            .map(|one| RecurringCause {
-                effect: one.effect,
-                ln_evidence: one.ln_e,
-                p_value: one.p_value,
-                by_e_value: one.by_e_value,
-                share: one.share,
-                strength: one.strength,
-                is_common: one.is_common,
-                size: one.size.map(|(size, _)| size),
-                size_sigma: one.size.map(|(_, sigma)| sigma),
-                unit: one.unit,
-                units: one
-                    .units
-                    .into_iter()
-                    .map(|(unit, probability)| LikelyUnit { unit, probability })
-                    .collect(),
-                alternatives: one.alternatives,
-            })
-            .collect()
+        recurring(&units, &options)
     }
 
     fn found_in_units(&self) -> Vec<FoundCause> {

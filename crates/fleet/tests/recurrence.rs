@@ -1,8 +1,9 @@
 //! The search for recurring causes on drawn scores.
 #![cfg(test)]
 
+use gyrocal_fleet::RecurringCause;
 use gyrocal_fleet::recurrence::{
-    Discovery, Injected, RecurrenceOptions, ScoreSimulator, UnitRecords, oracle_finds, recurring,
+    Injected, RecurrenceOptions, ScoreSimulator, UnitRecords, oracle_finds, recurring,
 };
 use gyrocal_hypothesis::{ScoreTable, ScoredEffect};
 use gyrocal_statistics::deviates::Draw;
@@ -60,7 +61,7 @@ fn fleet(cause: Option<(&str, f64, usize)>, seed: u64) -> Vec<ScoreTable> {
         .collect()
 }
 
-fn found(tables: &[ScoreTable]) -> Vec<Discovery> {
+fn found(tables: &[ScoreTable]) -> Vec<RecurringCause> {
     let names: Vec<String> = (0..tables.len())
         .map(|unit| format!("unit-{unit}"))
         .collect();
@@ -96,10 +97,12 @@ fn a_cause_with_random_signs_and_onsets_is_found_and_no_other() {
         let right = only
             .units
             .iter()
-            .filter(|(unit, _)| with.contains(unit))
+            .filter(|one| with.contains(&one.unit))
             .count();
-        let expected: f64 = only.units.iter().map(|(_, p)| p).sum();
-        let variance: f64 = only.units.iter().map(|(_, p)| p * (1.0 - p)).sum();
+        let expected: f64 = only.units.iter().map(|one| one.probability).sum();
+        let variances = only.units.iter();
+        let variances = variances.map(|one| one.probability * (1.0 - one.probability));
+        let variance: f64 = variances.sum();
         assert!(
             (right as f64 - expected).abs() < 4.0 * variance.sqrt(),
             "{right} {:?}",
@@ -140,7 +143,7 @@ fn two_causes_are_both_named_and_nothing_that_looks_like_one_of_them() {
         let found = found(&tables);
         assert_eq!(found.len(), 2, "{found:?}");
         for cause in ["constant", "step"] {
-            let is_it = |one: &&Discovery| {
+            let is_it = |one: &&RecurringCause| {
                 one.effect == cause || one.alternatives.iter().any(|o| o == cause)
             };
             assert_eq!(found.iter().filter(is_it).count(), 1, "{cause} {found:?}");
@@ -172,7 +175,7 @@ fn one_small_size_in_all_units_is_told_as_one() {
         panic!("{found:?}")
     };
     assert_eq!((only.effect.as_str(), only.is_common), ("other-9", true));
-    let (size, sigma) = only.size.unwrap();
+    let (size, sigma) = (only.size.unwrap(), only.size_sigma.unwrap());
     // 0.5 over the root of a unit's information, to three of its sigmas, 1/(50 √120).
     assert!((sigma * 50.0 * (UNITS as f64).sqrt() - 1.0).abs() < 1e-6);
     assert!((size - 0.01).abs() < 3.0 * sigma, "{size} {sigma}");

@@ -1,7 +1,7 @@
 //! Panels that the pages of all models have: measured and simulated values over time, what the models leave
 //! of them, and its correlation over rows.
 
-use gyrocal_document::{Band, Chart, Line, LineKind, Panel, Tint};
+use gyrocal_document::{Band, Chart, Line, LineKind, Panel, TimeAxis, Tint};
 
 /// Names of the models in legends.
 pub(crate) const NOMINAL: &str = "nominal model";
@@ -17,6 +17,22 @@ pub(crate) fn of_models(nominal: Vec<f64>, extended: Option<Vec<f64>>) -> Vec<Li
     let mut lines = vec![line(NOMINAL, Tint::Nominal, nominal)];
     lines.extend(extended.map(|values| line(EXTENDED, Tint::Extended, values)));
     lines
+}
+
+/// Panels in a row, at most.
+pub(crate) const COLUMNS: usize = 3;
+
+/// A chart over the time of a record.
+pub(crate) fn over_time(title: String, time: &TimeAxis, panels: Vec<Panel>) -> Chart {
+    Chart {
+        title,
+        abscissa: "time from the first row".to_owned(),
+        abscissa_unit: time.unit.to_owned(),
+        columns: panels.len().clamp(1, COLUMNS),
+        panels,
+        height_px: 240,
+        ..Chart::default()
+    }
 }
 
 /// Measured values with simulations of them.
@@ -40,6 +56,21 @@ pub(crate) fn simulation(
 pub(crate) fn band(label: &str, half_width: &[f64]) -> Band {
     let lower = half_width.iter().map(|half| -half).collect();
     Band::new(label, Tint::Expected, [lower, half_width.to_vec()])
+}
+
+/// The band of two standard deviations about values, each given with its standard deviation.
+pub(crate) fn two_sigmas(
+    label: &str,
+    tint: Tint,
+    values: impl Iterator<Item = (f64, f64)> + Clone,
+) -> Band {
+    let edge = |sign: f64| {
+        let values = values.clone();
+        values
+            .map(|(value, sigma)| value + sign * 2.0 * sigma)
+            .collect()
+    };
+    Band::new(label, tint, [edge(-1.0), edge(1.0)])
 }
 
 /// Correlations at the lags from one on.

@@ -5,6 +5,7 @@ use gyrocal_answer::Answer;
 use gyrocal_document::{Bar, BarGroup, Bars, Item, Section, Tint};
 use gyrocal_statistics::format;
 
+use crate::diagnosis::section as titled;
 use crate::words::listed;
 
 /// Number of effects shown that are neither reported nor alternatives.
@@ -14,139 +15,86 @@ const OTHERS: usize = 10;
 pub(crate) fn section(answer: &Answer) -> Option<Section> {
     let lead = "Each effect of the catalogue was tested against the nominal model. An effect beyond the dashed \
                 threshold is significant; those that resemble a stronger one are explained by it.";
-    Some(Section {
-        id: "ranking".to_owned(),
-        title: "Ranking".to_owned(),
-        lead: lead.to_owned(),
-        items: vec![Item::Bars(Ranked::of(answer)?.bars())],
-    })
+    let threshold = answer.threshold.filter(|threshold| *threshold > 0.0)?;
+    let bars = (!answer.ranking.is_empty()).then(|| Item::Bars(bars(answer, threshold)))?;
+    Some(titled("ranking", "Ranking", lead, vec![bars]))
 }
 
-/// A search with its result.
-#[derive(Clone, Debug, PartialEq)]
-struct Ranked {
-    threshold: f64,
-    false_alarm_probability: f64,
-    /// Effects with their statistics, the largest first.
-    statistics: Vec<(String, f64)>,
-    causes: Vec<Cause>,
-    /// Whether what is not among them is excluded.
-    is_settled: bool,
-}
-
-/// A reported effect.
-#[derive(Clone, Debug, PartialEq)]
-struct Cause {
-    effect: String,
-    /// Its size in standard deviations.
-    z: f64,
-    /// All that it may also be, with how it stands to it in words.
-    alternatives: Vec<(String, String)>,
-}
-
-impl Ranked {
-    /// Of an answer; `None` if nothing was searched.
-    fn of(answer: &Answer) -> Option<Self> {
-        let threshold = answer.threshold.filter(|threshold| *threshold > 0.0)?;
-        let statistics = answer.ranking.iter();
-        let causes = answer.causes().map(|finding| Cause {
-            effect: finding.effect.clone(),
-            z: finding.z,
-            alternatives: finding
-                .alternatives
-                .iter()
-                .map(|other| (other.effect.clone(), gyrocal_words::likelihood(other)))
-                .collect(),
-        });
-        let shares = answer.false_alarm_shares.as_ref();
-        let ranked = Self {
-            threshold,
-            false_alarm_probability: shares
-                .map_or(answer.false_alarm_probability, |shares| shares.search),
-            statistics: statistics
-                .map(|one| (one.effect.clone(), one.statistic))
-                .collect(),
-            causes: causes.collect(),
-            is_settled: answer.is_settled(),
-        };
-        (!ranked.statistics.is_empty()).then_some(ranked)
+/// The reported effects, or the strongest of none.
+fn title(answer: &Answer) -> String {
+    let causes: Vec<&str> = answer.causes().map(|one| &*one.effect).collect();
+    let (count, first) = (answer.ranking.len(), answer.ranking.first());
+    match &*causes {
+        [] => format!(
+            "None of {count} effects exceeds the threshold; the strongest is {}",
+            first.map_or("", |one| &one.effect)
+        ),
+        found => format!("{} detected among {count} effects tested", listed(found)),
     }
+}
 
-    /// Groups of bars, and what is left out of them.
-    fn groups(&self) -> (Vec<BarGroup>, String) {
-        let statistic = |effect: &str| {
-            let own = self.statistics.iter().find(|(id, _)| id == effect);
-            own.map_or(f64::NAN, |(_, statistic)| *statistic)
-        };
-        let bar = |effect: &str, tint: Tint, note: &str| Bar {
+/// Groups of bars, and what is left out of them.
+fn groups(answer: &Answer) -> (Vec<BarGroup>, String) {
+    let bar = |effect: &str, tint: Tint, note: String| {
+        let own = answer.ranking.iter().find(|one| one.effect == effect);
+        Bar {
             label: effect.to_owned(),
-            value: statistic(effect),
+            value: own.map_or(f64::NAN, |one| one.statistic),
             tint,
-            note: note.to_owned(),
+            note,
+        }
+    };
+    let is_settled = answer.is_settled();
+    let mut groups = Vec::new();
+    let mut shown: Vec<&str> = Vec::new();
+    for cause in answer.causes() {
+        let effect = &cause.effect;
+        let note = format!("reported, {:.1} sigma", cause.z);
+        let mut bars = vec![bar(effect, Tint::Extended, note)];
+        shown.push(effect);
+        for other in &cause.alternatives {
+            let note = gyrocal_words::likelihood(other);
+            bars.push(bar(&other.effect, Tint::Alternative, note));
+            shown.push(&other.effect);
+        }
+        let label = match bars.len() {
+            1 if is_settled => format!("{effect}, no alternatives"),
+            1 => effect.clone(),
+            _ => format!("{effect} and its alternatives"),
         };
-        let mut groups = Vec::new();
-        let mut shown: Vec<&str> = Vec::new();
-        for cause in &self.causes {
-            let note = format!("reported, {:.1} sigma", cause.z);
-            let mut bars = vec![bar(&cause.effect, Tint::Extended, &note)];
-            let others = cause.alternatives.iter();
-            bars.extend(others.map(|(id, note)| bar(id, Tint::Alternative, note)));
-            shown.push(&cause.effect);
-            shown.extend(cause.alternatives.iter().map(|(id, _)| id.as_str()));
-            groups.push(BarGroup {
-                label: match bars.len() {
-                    1 if self.is_settled => format!("{}, no alternatives", cause.effect),
-                    1 => cause.effect.clone(),
-                    _ => format!("{} and its alternatives", cause.effect),
-                },
-                bars,
-            });
-        }
-        let rest = self.statistics.iter();
-        let rest: Vec<_> = rest
-            .filter(|(id, _)| !shown.contains(&id.as_str()))
-            .collect();
-        let others = rest.iter().take(OTHERS);
-        let label = match self.is_settled {
-            true => "Not reported: excluded, or below the threshold",
-            false => "Not reported",
-        };
-        let others = others.map(|(id, _)| bar(id, Tint::Other, ""));
-        groups.push(BarGroup::new(label, others));
-        let omitted = rest.get(OTHERS).map(|(_, largest)| {
-            format!(
-                "{} more effects are not shown; the largest statistic among them is {largest:.1}.",
-                rest.len() - OTHERS
-            )
-        });
-        (groups, omitted.unwrap_or_default())
+        groups.push(BarGroup { label, bars });
     }
+    let rest = answer.ranking.iter();
+    let rest: Vec<_> = rest.filter(|one| !shown.contains(&&*one.effect)).collect();
+    let label = match is_settled {
+        true => "Not reported: excluded, or below the threshold",
+        false => "Not reported",
+    };
+    let others = rest.iter().take(OTHERS);
+    let others = others.map(|one| bar(&one.effect, Tint::Other, String::new()));
+    groups.push(BarGroup::new(label, others));
+    let omitted = rest.get(OTHERS).map(|largest| {
+        format!(
+            "{} more effects are not shown; the largest statistic among them is {:.1}.",
+            rest.len() - OTHERS,
+            largest.statistic
+        )
+    });
+    (groups, omitted.unwrap_or_default())
+}
 
-    /// The reported effects, or the strongest of none.
-    fn title(&self) -> String {
-        let causes: Vec<&str> = self.causes.iter().map(|one| one.effect.as_str()).collect();
-        let (count, first) = (self.statistics.len(), self.statistics.first());
-        match &*causes {
-            [] => format!(
-                "None of {count} effects exceeds the threshold; the strongest is {}",
-                first.map_or("", |(id, _)| id)
-            ),
-            found => format!("{} detected among {count} effects tested", listed(found)),
-        }
-    }
-
-    /// As bars of a page.
-    fn bars(&self) -> Bars {
-        let (groups, omitted) = self.groups();
-        let quantity = "score statistic, first search (chi-square, penalised for search)";
-        let threshold = format!(
-            "detection threshold, false-alarm probability {} over all effects",
-            format::percent(self.false_alarm_probability)
-        );
-        Bars {
-            threshold: Some((self.threshold, threshold)),
-            omitted,
-            ..Bars::new(&self.title(), quantity, groups)
-        }
+fn bars(answer: &Answer, threshold: f64) -> Bars {
+    let (groups, omitted) = groups(answer);
+    let quantity = "score statistic, first search (chi-square, penalised for search)";
+    let shares = answer.false_alarm_shares.as_ref();
+    let probability = shares.map_or(answer.false_alarm_probability, |shares| shares.search);
+    let meaning = format!(
+        "detection threshold, false-alarm probability {} over all effects",
+        format::percent(probability)
+    );
+    Bars {
+        threshold: Some((threshold, meaning)),
+        omitted,
+        ..Bars::new(&title(answer), quantity, groups)
     }
 }

@@ -98,15 +98,8 @@ impl Bench {
     /// [`Error::InvalidValue`] if [`Bench::parse`] would refuse it.
     pub fn to_toml(&self, path: &Path) -> Result<String, Error> {
         let text = self.format();
-        match Self::parse(&text, "") {
-            Ok(_) => Ok(text),
-            Err(Error::Input(error)) => Err(Error::InvalidValue {
-                path: path.to_owned(),
-                found: error.found,
-                expected: error.expected,
-            }),
-            Err(other) => Err(other),
-        }
+        Self::parse(&text, "").map_err(|error| error.of_written(path))?;
+        Ok(text)
     }
 
     /// Specific force at rest in the record's unit: local gravity over the unit, 1 unless

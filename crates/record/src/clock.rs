@@ -2,8 +2,8 @@
 
 use core::ops::Range;
 
-use crate::plausible::counted;
 use crate::record::Record;
+use crate::words::counted;
 
 /// Most leaps back of a clock that began again: more are rows out of order.
 const MOST_RESTARTS: usize = 20;
@@ -51,7 +51,7 @@ impl ClockFault {
             (None, 0) => (
                 format!(
                     "{} with the time of the row before and other values, the first at {here_s} s",
-                    counted(wrong.len())
+                    counted(wrong.len(), "row")
                 ),
                 "keep one row of each time; if the stamps are rounded and no row is missing, give `rate_hz` in place of \
                  `column` in `[time]` of a map (`--columns MAP.toml`)"
@@ -60,7 +60,7 @@ impl ClockFault {
             (None, _) => (
                 format!(
                     "{} out of order, the first at {here_s} s after {before_s} s",
-                    counted(wrong.len())
+                    counted(wrong.len(), "row")
                 ),
                 "sort the rows by time, and keep one of those that repeat".to_owned(),
             ),

@@ -12,7 +12,7 @@ use flate2::bufread::MultiGzDecoder;
 use ruzstd::decoding::StreamingDecoder;
 use sha2::{Digest, Sha256};
 
-use crate::error::Error;
+use crate::error::{Error, unreadable};
 
 /// First bytes of gzip and of Zstandard.
 const GZIP: &[u8] = &[0x1f, 0x8b];
@@ -48,7 +48,7 @@ pub fn keep_streams() {
 ///
 /// [`Error::Unreadable`]; of a stream too, unless [`keep_streams`] was called.
 pub fn open_content(path: &Path) -> Result<Box<dyn BufRead>, Error> {
-    open(path).map_err(|reason| unreadable(path, reason))
+    open(path).map_err(unreadable(path))
 }
 
 /// Opens an input file as [`open_content`] does, decoded to UTF-8 from the encoding of a label of the Encoding
@@ -88,7 +88,7 @@ pub fn read_content(path: &Path) -> Result<Vec<u8>, Error> {
     let mut bytes = Vec::new();
     open_content(path)?
         .read_to_end(&mut bytes)
-        .map_err(|reason| unreadable(path, reason))?;
+        .map_err(unreadable(path))?;
     Ok(bytes)
 }
 
@@ -100,7 +100,7 @@ pub(crate) fn digest_of(path: &Path) -> Result<String, Error> {
         return Ok(digest);
     }
     let read = || io::copy(&mut raw(path)?, &mut io::sink());
-    read().map_err(|reason| unreadable(path, reason))?;
+    read().map_err(unreadable(path))?;
     Ok(opened().digests.get(path).cloned().unwrap_or_default())
 }
 
@@ -176,13 +176,6 @@ impl Read for Hashed {
             opened().digests.insert(self.path.clone(), digest);
         }
         Ok(count)
-    }
-}
-
-fn unreadable(path: &Path, reason: io::Error) -> Error {
-    Error::Unreadable {
-        path: path.to_owned(),
-        reason,
     }
 }
 

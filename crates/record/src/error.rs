@@ -1,7 +1,7 @@
 //! The error type of this crate, and the located error in it.
 
 use std::fmt;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use miette::{Diagnostic, LabeledSpan, SourceCode};
 
@@ -59,6 +59,36 @@ pub enum Error {
         /// Its name up to the first dot.
         found: String,
     },
+}
+
+impl Error {
+    /// What a written text is refused for, as the refusal of the file that it becomes.
+    pub(crate) fn of_written(self, path: &Path) -> Self {
+        match self {
+            Self::Input(error) => Self::InvalidValue {
+                path: path.to_owned(),
+                found: error.found,
+                expected: error.expected,
+            },
+            other => other,
+        }
+    }
+}
+
+/// Makes the error of a file that cannot be read.
+pub(crate) fn unreadable(path: &Path) -> impl FnOnce(std::io::Error) -> Error {
+    move |reason| Error::Unreadable {
+        path: path.to_owned(),
+        reason,
+    }
+}
+
+/// Makes the error of a file that cannot be written.
+pub(crate) fn unwritable(path: &Path) -> impl FnOnce(std::io::Error) -> Error {
+    move |reason| Error::Unwritable {
+        path: path.to_owned(),
+        reason,
+    }
 }
 
 impl Diagnostic for Error {

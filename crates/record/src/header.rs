@@ -7,9 +7,6 @@ use crate::fields::Line;
 use crate::source::{SourceText, quoted};
 use crate::suggest::{any_of, similar_names};
 
-/// The columns that a record must have.
-pub(crate) const REQUIRED_COLUMNS: [&str; 4] = ["time_s", "accel_x_g", "accel_y_g", "accel_z_g"];
-
 /// The columns that a record may have.
 pub(crate) const COLUMNS: [&str; 5] = [
     "time_s",
@@ -18,6 +15,9 @@ pub(crate) const COLUMNS: [&str; 5] = [
     "accel_z_g",
     "temperature_c",
 ];
+
+/// The columns that a record must have.
+pub(crate) const REQUIRED_COLUMNS: &[&str] = COLUMNS.split_at(4).0;
 
 /// Index of the field of each column.
 #[derive(Debug)]
@@ -68,15 +68,12 @@ impl Header {
                 )
             })
         };
+        let [time, x, y, z, temperature] = COLUMNS;
         Ok(Self {
             fields: names.len(),
-            time: required(REQUIRED_COLUMNS[0])?,
-            accel: [
-                required(REQUIRED_COLUMNS[1])?,
-                required(REQUIRED_COLUMNS[2])?,
-                required(REQUIRED_COLUMNS[3])?,
-            ],
-            temperature: place(COLUMNS[4]),
+            time: required(time)?,
+            accel: [required(x)?, required(y)?, required(z)?],
+            temperature: place(temperature),
         })
     }
 }

@@ -86,6 +86,7 @@ mod suggest;
 mod swapped;
 mod table;
 mod white_noise;
+mod words;
 
 pub use bench::{Bench, Prior};
 pub use bound::Bound;
@@ -102,6 +103,7 @@ pub use model_file::{Gyros, KnownEffect, ModelFile, ParameterEstimate, Standing}
 pub use module_name::module_name;
 pub use noise_ratio::{NoiseDifference, NoiseEstimate, NoiseRatio};
 pub use output::{Outputs, write_json, write_whole};
+pub use plausible::most_equal;
 pub use printable::{printable, printable_line, printable_path, shell_quoted};
 pub use record::Record;
 pub use record_file::RecordFile;
@@ -118,6 +120,7 @@ pub use source::SourceText;
 pub use suggest::{any_of, nearest_names, similar_names};
 pub use table::Table;
 pub use white_noise::WhiteNoise;
+pub use words::{capitalised, counted};
 
 /// Letters of the axes, in the order of every array of three: keys of tables and parts of names.
 pub const AXES: [&str; 3] = ["x", "y", "z"];

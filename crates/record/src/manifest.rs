@@ -8,7 +8,7 @@ use crate::content::digest_of;
 use crate::error::Error;
 
 /// Program, inputs and command line of a result.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Manifest {
     /// Name of the program.

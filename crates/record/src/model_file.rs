@@ -151,15 +151,8 @@ impl ModelFile {
     pub fn to_toml(&self, path: &Path, known: &[KnownEffect<'_>]) -> Result<String, Error> {
         module_name(path)?;
         let text = self.format();
-        match Self::parse(&text, "", known) {
-            Ok(_) => Ok(text),
-            Err(Error::Input(error)) => Err(Error::InvalidValue {
-                path: path.to_owned(),
-                found: error.found,
-                expected: error.expected,
-            }),
-            Err(other) => Err(other),
-        }
+        Self::parse(&text, "", known).map_err(|error| error.of_written(path))?;
+        Ok(text)
     }
 
     fn from_document(document: &Document, known: &[KnownEffect<'_>]) -> Result<Self, Error> {

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 use tempfile::{Builder, NamedTempFile};
 
-use crate::error::Error;
+use crate::error::{Error, unwritable};
 
 /// Some output files that appear together.
 ///
@@ -42,10 +42,7 @@ impl Outputs {
     ///
     /// [`Error::Unwritable`] if that is not possible.
     pub fn stage(&mut self, path: &Path, content: &[u8]) -> Result<(), Error> {
-        let staged = stage(path, content).map_err(|reason| Error::Unwritable {
-            path: path.to_owned(),
-            reason,
-        })?;
+        let staged = stage(path, content).map_err(unwritable(path))?;
         self.staged.push(staged);
         Ok(())
     }
@@ -59,22 +56,24 @@ impl Outputs {
         for staged in self.staged {
             match staged {
                 Staged::File { temporary, target } => {
-                    temporary
-                        .persist(&target)
-                        .map_err(|error| Error::Unwritable {
-                            path: target,
-                            reason: error.error,
-                        })?;
+                    let persisted = temporary.persist(&target);
+                    persisted.map_err(|error| unwritable(&target)(error.error))?;
                 }
                 Staged::Stream { content, target } => {
-                    write_stream(&target, &content).map_err(|reason| Error::Unwritable {
-                        path: target,
-                        reason,
-                    })?
+                    write_stream(&target, &content).map_err(unwritable(&target))?;
                 }
             }
         }
         Ok(())
+    }
+
+    /// Stages a result as JSON with a line break at its end.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Unwritable`] if that is not possible.
+    pub fn stage_json<T: Serialize>(&mut self, path: &Path, value: &T) -> Result<(), Error> {
+        self.stage(path, &json_bytes(path, value)?)
     }
 }
 
@@ -98,22 +97,9 @@ pub fn write_json<T: Serialize>(path: &Path, value: &T) -> Result<(), Error> {
     write_whole(path, &json_bytes(path, value)?)
 }
 
-impl Outputs {
-    /// Stages a result as JSON with a line break at its end.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Unwritable`] if that is not possible.
-    pub fn stage_json<T: Serialize>(&mut self, path: &Path, value: &T) -> Result<(), Error> {
-        self.stage(path, &json_bytes(path, value)?)
-    }
-}
-
 fn json_bytes<T: Serialize>(path: &Path, value: &T) -> Result<Vec<u8>, Error> {
-    let mut content = serde_json::to_vec_pretty(value).map_err(|error| Error::Unwritable {
-        path: path.to_owned(),
-        reason: error.into(),
-    })?;
+    let content = serde_json::to_vec_pretty(value);
+    let mut content = content.map_err(|error| unwritable(path)(error.into()))?;
     content.push(b'\n');
     Ok(content)
 }

@@ -5,6 +5,7 @@ use std::ops::Range;
 use crate::error::{Error, InputErrorKind};
 use crate::record::Record;
 use crate::source::SourceText;
+use crate::words::counted;
 
 /// Limits of the median norm of specific force in a record, g.
 const MEDIAN_NORM: std::ops::RangeInclusive<f64> = 0.9..=1.1;
@@ -45,16 +46,11 @@ pub(crate) fn refuse_too_few(
     Err(source.error(
         InputErrorKind::TooFewRows,
         last.clone(),
-        format!("{} {which}", counted(found)),
-        format!("at least {}", counted(least)),
+        format!("{} {which}", counted(found, "row")),
+        format!("at least {}", counted(least, "row")),
         "a record takes as many rows as there are states to estimate, and a day or more to \
          determine them",
     ))
-}
-
-pub(crate) fn counted(rows: usize) -> String {
-    let ending = if rows == 1 { "" } else { "s" };
-    format!("{rows} row{ending}")
 }
 
 pub(crate) fn check_intervals(
@@ -101,8 +97,7 @@ pub(crate) fn check_stuck(
     source: &SourceText,
     places: &[Range<usize>],
 ) -> Result<(), Error> {
-    let stuck = (0..3).all(|axis| is_stuck(record, axis));
-    if record.len() < STUCK_ROWS || !stuck {
+    if most_equal(&record.accel_g).is_none() {
         return Ok(());
     }
     Err(source.error(
@@ -114,13 +109,19 @@ pub(crate) fn check_stuck(
     ))
 }
 
-/// Whether nearly all values of an axis are one, or there are none.
-fn is_stuck(record: &Record, axis: usize) -> bool {
-    let column = record.accel_g.iter().map(|row| row[axis]);
-    let mut values: Vec<f64> = column.filter(|value| !value.is_nan()).collect();
-    values.sort_by(f64::total_cmp);
-    let equal = values.chunk_by(|a, b| a == b).map(<[f64]>::len);
-    equal.max().unwrap_or(0) as f64 >= STUCK_SHARE * values.len() as f64
+/// How many readings of each accelerometer are the same; `None` unless nearly all are, in many rows.
+#[must_use]
+pub fn most_equal(accel_g: &[[f64; 3]]) -> Option<[usize; 3]> {
+    let counts: [(usize, usize); 3] = core::array::from_fn(|axis| {
+        let column = accel_g.iter().map(|row| row[axis]);
+        let mut values: Vec<f64> = column.filter(|value| !value.is_nan()).collect();
+        values.sort_by(f64::total_cmp);
+        let equal = values.chunk_by(|a, b| a == b).map(<[f64]>::len);
+        (equal.max().unwrap_or(0), values.len())
+    });
+    let is_stuck = |(equal, all): &(usize, usize)| *equal as f64 >= STUCK_SHARE * *all as f64;
+    let stuck = accel_g.len() >= STUCK_ROWS && counts.iter().all(is_stuck);
+    stuck.then_some(counts.map(|(equal, _)| equal))
 }
 
 /// What is done with numbers that stand for missing values.

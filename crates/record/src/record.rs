@@ -4,7 +4,7 @@ use std::io;
 use std::ops::Range;
 use std::path::Path;
 
-use crate::error::Error;
+use crate::error::{Error, unwritable};
 use crate::header::{COLUMNS, REQUIRED_COLUMNS};
 use crate::output::write_whole;
 
@@ -73,10 +73,8 @@ impl Record {
 
     /// The text of the record's file, whatever its values are.
     pub(crate) fn text(&self, path: &Path) -> Result<String, Error> {
-        self.format().map_err(|error| Error::Unwritable {
-            path: path.to_owned(),
-            reason: io::Error::other(error),
-        })
+        let text = self.format();
+        text.map_err(|error| unwritable(path)(io::Error::other(error)))
     }
 
     /// Number of rows.

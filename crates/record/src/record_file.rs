@@ -5,12 +5,13 @@ use std::path::Path;
 
 use crate::clock::{ClockFault, UNNAMED, leave_out_repeated};
 use crate::error::{Error, InputErrorKind};
-use crate::plausible::{Codes, check_intervals, check_norms, check_stuck, counted, refuse_too_few};
+use crate::plausible::{Codes, check_intervals, check_norms, check_stuck, refuse_too_few};
 use crate::printable::printable_line;
 use crate::record::Record;
 use crate::rows::{Form, parse};
 use crate::setup::SetupProblem;
 use crate::source::SourceText;
+use crate::words::counted;
 
 /// A record as it stands in its file, with the places of its rows: in the format of a record, with
 /// values that may be those of no platform. Times may not rise, specific force may be in any unit, and
@@ -71,7 +72,7 @@ impl RecordFile {
             format!(
                 "{}:{line}: this row repeats the row before it in every value, as {} of the record do. They are left out",
                 printable_line(source.name()),
-                counted(repeated.len())
+                counted(repeated.len(), "row")
             )
         });
         Self {

@@ -13,7 +13,7 @@ pub const SCHEMA_VERSION: u32 = 1;
 pub const CALIBRATION_SCHEMA_VERSION: u32 = 2;
 
 /// Result of `gyrocal calibrate`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct CalibrationReport {
     /// [`CALIBRATION_SCHEMA_VERSION`] at the time of writing.
@@ -81,23 +81,8 @@ impl CalibrationReport {
             manifest,
             verdict_text: format!("The set-up is wrong: {}", texts.join(" ")),
             setup,
-            effects: Vec::new(),
-            coefficients: Vec::new(),
-            covariance: Vec::new(),
-            nis_mean: None,
-            nis_band: None,
-            verdict: FitVerdict::Setup,
-            iterations: 0,
-            usable: false,
-            records: Vec::new(),
-            rows: 0,
-            final_angles_deg: None,
             method,
-            undetermined: Vec::new(),
-            runs: Vec::new(),
-            site: Vec::new(),
-            first_record_sigmas: None,
-            with_effects: None,
+            ..Self::default()
         }
     }
 }
@@ -195,7 +180,7 @@ pub struct Coefficient {
 }
 
 /// What a calibration says of its records.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
@@ -217,16 +202,18 @@ pub enum FitVerdict {
     /// or steps, or that of single channels is not as declared.
     NoiseDiffers,
     /// A gross error of a set-up leaves nothing sound: nothing was estimated.
+    #[default]
     Setup,
 }
 
 /// Method of estimation of the coefficients.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum CalibrationMethod {
     /// Iterated smoothing of whole records.
+    #[default]
     Batch,
     /// One pass of the filter that a controller embeds.
     Streaming,

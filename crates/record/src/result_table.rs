@@ -3,7 +3,7 @@
 use std::io;
 use std::path::Path;
 
-use crate::error::Error;
+use crate::error::{Error, unwritable};
 use crate::record::Record;
 
 /// A table of named columns of equal length.
@@ -83,10 +83,7 @@ impl ResultTable {
             true => self.to_parquet(),
             false => self.to_csv(),
         };
-        written.map_err(|reason| Error::Unwritable {
-            path: path.to_owned(),
-            reason,
-        })
+        written.map_err(unwritable(path))
     }
 
     fn to_csv(&self) -> io::Result<Vec<u8>> {

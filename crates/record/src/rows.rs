@@ -7,7 +7,7 @@ use crate::clock::{ClockFault, leave_out_repeated};
 use crate::error::{Error, InputErrorKind};
 use crate::fields::{Field, Line, Lines};
 use crate::header::Header;
-use crate::plausible::{Codes, check_intervals, check_norms, check_stuck, refuse_too_few};
+use crate::plausible::{Codes, check_norms, refuse_too_few};
 use crate::record::Record;
 use crate::source::{SourceText, quoted};
 
@@ -22,23 +22,7 @@ impl Record {
     ///
     /// [`Error::Unreadable`], or [`Error::Input`] for a fault in it.
     pub fn read(path: &Path) -> Result<Self, Error> {
-        Ok(read_with_places(&SourceText::read(path)?, 1, Codes::Refused)?.0)
-    }
-
-    /// Reads a record of a platform that something is to be estimated from: with at least some
-    /// number of rows, as many as a filter has states, not too far apart, and not all the same.
-    /// Numbers that stand for missing values, the same in three rows or more, are read as they
-    /// stand: the check of the set-up leaves them out.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Unreadable`], or [`Error::Input`] for a fault in it.
-    pub fn read_at_least(path: &Path, rows: usize) -> Result<Self, Error> {
-        let source = SourceText::read(path)?;
-        let (record, places) = read_with_places(&source, rows, Codes::Read)?;
-        check_intervals(&record, &source, &places)?;
-        check_stuck(&record, &source, &places)?;
-        Ok(record)
+        read_strictly(&SourceText::read(path)?)
     }
 
     /// Parses the text of a record; errors call it `name`.
@@ -47,21 +31,17 @@ impl Record {
     ///
     /// [`Error::Input`] for a fault in it.
     pub fn parse(text: &str, name: &str) -> Result<Self, Error> {
-        Ok(read_with_places(&SourceText::new(text, name)?, 1, Codes::Refused)?.0)
+        read_strictly(&SourceText::new(text, name)?)
     }
 }
 
-fn read_with_places(
-    source: &SourceText,
-    least: usize,
-    codes: Codes,
-) -> Result<(Record, Vec<Range<usize>>), Error> {
+fn read_strictly(source: &SourceText) -> Result<Record, Error> {
     let (mut record, mut places, header) = parse(source, Form::Strict)?;
     leave_out_repeated(&mut record, &mut places);
     check_times(&record, source, &places)?;
-    refuse_too_few(&record, source, places.last().unwrap_or(&header), least)?;
-    check_norms(&record, source, &places, codes)?;
-    Ok((record, places))
+    refuse_too_few(&record, source, places.last().unwrap_or(&header), 1)?;
+    check_norms(&record, source, &places, Codes::Refused)?;
+    Ok(record)
 }
 
 /// How much of the format a reader insists on.

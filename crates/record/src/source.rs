@@ -5,7 +5,7 @@ use std::ops::Range;
 use std::path::Path;
 
 use crate::content::{decoded, open_text};
-use crate::error::{Error, InputError, InputErrorKind};
+use crate::error::{Error, InputError, InputErrorKind, unreadable};
 use crate::excerpt::Excerpt;
 use crate::printable::bounded;
 
@@ -38,10 +38,7 @@ impl SourceText {
         let mut bytes = Vec::new();
         open_text(path, encoding)?
             .read_to_end(&mut bytes)
-            .map_err(|reason| Error::Unreadable {
-                path: path.to_owned(),
-                reason,
-            })?;
+            .map_err(unreadable(path))?;
         Self::from_utf8(bytes, &path.display().to_string())
     }
 

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 
 use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use toml::de::{DeInteger, DeTable, DeValue};
 
 use crate::bound::Bound;
 use crate::error::{Error, InputErrorKind};
@@ -108,10 +108,7 @@ impl<'a> Table<'a> {
     ///
     /// [`Error::Input`] if it is no number or out of bounds.
     pub fn optional_number(&self, key: &str, bound: Bound) -> Result<Option<f64>, Error> {
-        match self.entry(key) {
-            Some((_, value)) => self.as_number(value, bound).map(Some),
-            None => Ok(None),
-        }
+        self.read(key, |value| self.as_number(value, bound))
     }
 
     /// Three numbers, for x, y and z.
@@ -120,10 +117,8 @@ impl<'a> Table<'a> {
     ///
     /// [`Error::Input`] if they are absent, not three, no numbers, or out of bounds.
     pub fn three_numbers(&self, key: &str, bound: Bound) -> Result<[f64; 3], Error> {
-        match self.entry(key) {
-            Some((_, value)) => self.as_three(value, bound),
-            None => Err(self.missing(&format!("`{key} = [x, y, z]`"), &[])),
-        }
+        self.optional_three_numbers(key, bound)?
+            .ok_or_else(|| self.missing(&format!("`{key} = [x, y, z]`"), &[]))
     }
 
     /// Three numbers, for x, y and z, or nothing.
@@ -136,9 +131,7 @@ impl<'a> Table<'a> {
         key: &str,
         bound: Bound,
     ) -> Result<Option<[f64; 3]>, Error> {
-        self.entry(key)
-            .map(|(_, value)| self.as_three(value, bound))
-            .transpose()
+        self.read(key, |value| self.as_three(value, bound))
     }
 
     /// Two numbers, or nothing.
@@ -147,17 +140,9 @@ impl<'a> Table<'a> {
     ///
     /// [`Error::Input`] if what is there is not two numbers, or out of bounds.
     pub fn optional_two_numbers(&self, key: &str, bound: Bound) -> Result<Option<[f64; 2]>, Error> {
-        let Some((_, value)) = self.entry(key) else {
-            return Ok(None);
-        };
-        let items = value.get_ref().as_array();
-        let [from, to] = items.map(|array| &array[..]).unwrap_or(&[]) else {
-            return Err(self.wrong_type(value, "two numbers `[from, to]`"));
-        };
-        Ok(Some([
-            self.as_number(from, bound)?,
-            self.as_number(to, bound)?,
-        ]))
+        self.read(key, |value| {
+            self.numbers(value, bound, "two numbers `[from, to]`")
+        })
     }
 
     /// Three numbers, or one that stands for all three, or nothing.
@@ -170,11 +155,10 @@ impl<'a> Table<'a> {
         key: &str,
         bound: Bound,
     ) -> Result<Option<[f64; 3]>, Error> {
-        match self.entry(key) {
-            Some((_, value)) if value.get_ref().is_array() => self.as_three(value, bound).map(Some),
-            Some((_, value)) => self.as_number(value, bound).map(|one| Some([one; 3])),
-            None => Ok(None),
-        }
+        self.read(key, |value| match value.get_ref().is_array() {
+            true => self.as_three(value, bound),
+            false => self.as_number(value, bound).map(|one| [one; 3]),
+        })
     }
 
     /// Pairs of numbers `[[a, b], …]` that may be absent.
@@ -184,26 +168,16 @@ impl<'a> Table<'a> {
     /// [`Error::Input`] if what is there is something else, or if an `a` is not less than its `b`.
     pub fn optional_intervals(&self, key: &str, bound: Bound) -> Result<Vec<[f64; 2]>, Error> {
         const EXPECTED: &str = "intervals `[[from, to], …]` with from less than to";
-        let Some((_, value)) = self.entry(key) else {
-            return Ok(Vec::new());
+        let interval = |value: &Spanned<DeValue<'_>>| match self.numbers(value, bound, EXPECTED)? {
+            [from, to] if from < to => Ok([from, to]),
+            _ => Err(self.value_error(InputErrorKind::OutOfRange, value, EXPECTED, "")),
         };
-        let intervals = value
-            .get_ref()
-            .as_array()
-            .ok_or_else(|| self.wrong_type(value, EXPECTED))?;
-        let interval = |value: &Spanned<DeValue<'_>>| {
-            let ends = value.get_ref().as_array();
-            let [from, to] = ends.map(|array| &array[..]).unwrap_or(&[]) else {
-                return Err(self.wrong_type(value, EXPECTED));
-            };
-            let ends = [self.as_number(from, bound)?, self.as_number(to, bound)?];
-            if ends[0] < ends[1] {
-                Ok(ends)
-            } else {
-                Err(self.value_error(InputErrorKind::OutOfRange, value, EXPECTED, ""))
-            }
-        };
-        intervals.iter().map(interval).collect()
+        let intervals = self.read(key, |value| {
+            let intervals = value.get_ref().as_array();
+            let intervals = intervals.ok_or_else(|| self.wrong_type(value, EXPECTED))?;
+            intervals.iter().map(interval).collect()
+        });
+        Ok(intervals?.unwrap_or_default())
     }
 
     /// A whole number from 0, as seeds are.
@@ -219,7 +193,7 @@ impl<'a> Table<'a> {
         value
             .get_ref()
             .as_integer()
-            .and_then(|integer| i64::from_str_radix(integer.as_str(), integer.radix()).ok())
+            .and_then(whole)
             .and_then(|integer| u64::try_from(integer).ok())
             .ok_or_else(|| self.wrong_type(value, EXPECTED))
     }
@@ -235,15 +209,7 @@ impl<'a> Table<'a> {
         };
         let items = value.get_ref().as_array().filter(|items| !items.is_empty());
         let items = items.ok_or_else(|| self.wrong_type(value, expected))?;
-        let text = |item: &'a Spanned<DeValue<'a>>| match item.get_ref().as_str() {
-            Some(text) => Ok(Text {
-                source: self.source,
-                text,
-                span: item.span(),
-            }),
-            None => Err(self.wrong_type(item, expected)),
-        };
-        items.iter().map(text).collect()
+        items.iter().map(|item| self.text(item, expected)).collect()
     }
 
     /// A text that may be absent, with its place.
@@ -256,17 +222,7 @@ impl<'a> Table<'a> {
         key: &str,
         expected: &str,
     ) -> Result<Option<Text<'a>>, Error> {
-        let Some((_, value)) = self.entry(key) else {
-            return Ok(None);
-        };
-        match value.get_ref().as_str() {
-            Some(text) => Ok(Some(Text {
-                source: self.source,
-                text,
-                span: value.span(),
-            })),
-            None => Err(self.wrong_type(value, expected)),
-        }
+        self.read(key, |value| self.text(value, expected))
     }
 
     /// Whether the value of a key is this word.
@@ -290,6 +246,15 @@ impl<'a> Table<'a> {
             .iter()
             .find(|(name, _)| name.get_ref() == key)
             .map(|(name, value)| (name.span(), value))
+    }
+
+    /// What is read of the value of a key; nothing where it is absent.
+    fn read<T>(
+        &self,
+        key: &str,
+        read: impl FnOnce(&'a Spanned<DeValue<'a>>) -> Result<T, Error>,
+    ) -> Result<Option<T>, Error> {
+        self.entry(key).map(|(_, value)| read(value)).transpose()
     }
 
     fn refuse_unknown(&self, known: &[&str]) -> Result<(), Error> {
@@ -349,35 +314,47 @@ impl<'a> Table<'a> {
     }
 
     fn as_three(&self, value: &Spanned<DeValue<'_>>, bound: Bound) -> Result<[f64; 3], Error> {
-        let items = value.get_ref().as_array();
-        let [x, y, z] = items.map(|array| &array[..]).unwrap_or(&[]) else {
-            return Err(self.wrong_type(value, "three numbers `[x, y, z]`"));
-        };
-        Ok([
-            self.as_number(x, bound)?,
-            self.as_number(y, bound)?,
-            self.as_number(z, bound)?,
-        ])
+        self.numbers(value, bound, "three numbers `[x, y, z]`")
+    }
+
+    fn numbers<const N: usize>(
+        &self,
+        value: &Spanned<DeValue<'_>>,
+        bound: Bound,
+        expected: &str,
+    ) -> Result<[f64; N], Error> {
+        let items = value.get_ref().as_array().map_or(&[][..], |all| &all[..]);
+        if items.len() != N {
+            return Err(self.wrong_type(value, expected));
+        }
+        let mut numbers = [0.0; N];
+        for (number, item) in numbers.iter_mut().zip(items) {
+            *number = self.as_number(item, bound)?;
+        }
+        Ok(numbers)
+    }
+
+    fn text(&self, value: &'a Spanned<DeValue<'a>>, expected: &str) -> Result<Text<'a>, Error> {
+        let text = value.get_ref().as_str();
+        Ok(Text {
+            source: self.source,
+            text: text.ok_or_else(|| self.wrong_type(value, expected))?,
+            span: value.span(),
+        })
     }
 
     fn as_number(&self, value: &Spanned<DeValue<'_>>, bound: Bound) -> Result<f64, Error> {
         let number = match value.get_ref() {
             DeValue::Float(float) => float.as_str().parse().ok(),
-            DeValue::Integer(integer) => i64::from_str_radix(integer.as_str(), integer.radix())
-                .ok()
-                .map(|integer| integer as f64),
+            DeValue::Integer(integer) => whole(integer).map(|integer| integer as f64),
             _ => None,
         };
-        let Some(number) = number else {
-            let expected = bound.describe();
-            return Err(self.value_error(InputErrorKind::NotANumber, value, &expected, ""));
+        let kind = match number {
+            Some(number) if bound.holds(number) => return Ok(number),
+            Some(_) => InputErrorKind::OutOfRange,
+            None => InputErrorKind::NotANumber,
         };
-        if bound.holds(number) {
-            Ok(number)
-        } else {
-            let expected = bound.describe();
-            Err(self.value_error(InputErrorKind::OutOfRange, value, &expected, ""))
-        }
+        Err(self.value_error(kind, value, &bound.describe(), ""))
     }
 
     fn wrong_type(&self, value: &Spanned<DeValue<'_>>, expected: &str) -> Error {
@@ -395,4 +372,8 @@ impl<'a> Table<'a> {
         self.source
             .error(kind, value.span(), quoted(there), expected, advice)
     }
+}
+
+fn whole(integer: &DeInteger<'_>) -> Option<i64> {
+    i64::from_str_radix(integer.as_str(), integer.radix()).ok()
 }

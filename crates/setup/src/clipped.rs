@@ -89,10 +89,7 @@ pub(crate) fn find(samples: &mut Samples<'_>) -> Vec<SetupFinding> {
             .filter(|row| limits.iter().any(|end| end.is_in_band(samples, *row)))
             .collect();
         findings.push(finding(samples, &limits, &at));
-        for row in at {
-            samples.accel_g[row][axis] = f64::NAN;
-        }
-        samples.look_again();
+        samples.leave_out(at, &[axis]);
     }
     findings
 }

@@ -16,41 +16,25 @@ pub(crate) fn conventions(angles_deg: Vector) -> Vec<(&'static str, Matrix)> {
     let [x, y, z] = angles_deg;
     let usual = platform_c_enu(angles_deg);
     let of = platform_c_enu;
+    let against = |frame_c_enu| product(usual, frame_c_enu);
+    let order = |order| in_order(angles_deg, order);
     vec![
         ("angles in radians", of(angles_deg.map(f64::to_degrees))),
         ("all angles negated", of([-x, -y, -z])),
         ("the inverse rotation", transposed(usual)),
-        (
-            "angles in the order z, y, x",
-            in_order(angles_deg, [2, 1, 0]),
-        ),
-        (
-            "angles in the order z, x, y",
-            in_order(angles_deg, [2, 0, 1]),
-        ),
-        (
-            "angles in the order y, x, z",
-            in_order(angles_deg, [1, 0, 2]),
-        ),
-        (
-            "angles in the order y, z, x",
-            in_order(angles_deg, [1, 2, 0]),
-        ),
-        (
-            "angles in the order x, z, y",
-            in_order(angles_deg, [0, 2, 1]),
-        ),
+        ("angles in the order z, y, x", order([2, 1, 0])),
+        ("angles in the order z, x, y", order([2, 0, 1])),
+        ("angles in the order y, x, z", order([1, 0, 2])),
+        ("angles in the order y, z, x", order([1, 2, 0])),
+        ("angles in the order x, z, y", order([0, 2, 1])),
         ("the third angle negated", of([x, y, -z])),
         ("the second angle negated", of([x, -y, z])),
         ("the first angle negated", of([-x, y, z])),
         ("the first two angles exchanged", of([y, x, z])),
         ("the last two angles exchanged", of([x, z, y])),
         ("the first and the last angle exchanged", of([z, y, x])),
-        (
-            "angles against north, east, down",
-            product(usual, NED_C_ENU),
-        ),
-        ("angles against north, west, up", product(usual, NWU_C_ENU)),
+        ("angles against north, east, down", against(NED_C_ENU)),
+        ("angles against north, west, up", against(NWU_C_ENU)),
         ("the third angle off by 180 deg", of([x, y, z + 180.0])),
         ("the third angle off by 90 deg", of([x, y, z + 90.0])),
         ("the third angle off by -90 deg", of([x, y, z - 90.0])),

@@ -75,17 +75,13 @@ pub(crate) fn find(samples: &mut Samples<'_>) -> Vec<SetupFinding> {
         let sample = complete[copy.from];
         finding.description += " The rows after them go on where the copy began, so their times \
                                 are wrong: they are left out too.";
-        if sample.time_s - complete[0].time_s < LEAST_BEFORE_S {
-            finding = finding.stopping();
-        }
+        finding.stops = sample.time_s - complete[0].time_s < LEAST_BEFORE_S;
         samples.end = sample.row;
     }
-    for copy in &copies {
-        for sample in &complete[copy.from..copy.from + copy.len] {
-            samples.accel_g[sample.row] = [f64::NAN; 3];
-        }
-    }
-    samples.look_again();
+    let copied = copies
+        .iter()
+        .flat_map(|copy| copy.from..copy.from + copy.len);
+    samples.leave_out(copied.map(|at| complete[at].row), &[0, 1, 2]);
     vec![finding]
 }
 

@@ -45,19 +45,15 @@ impl SetupFinding {
     }
 
     /// The same, which leaves nothing sound.
-    pub(crate) fn stopping(self) -> Self {
-        Self {
-            stops: true,
-            ..self
-        }
+    pub(crate) fn stopping(mut self) -> Self {
+        self.stops = true;
+        self
     }
 
     /// The same of some rows.
-    pub(crate) fn at(self, rows: Range<usize>) -> Self {
-        Self {
-            rows: Some(rows),
-            ..self
-        }
+    pub(crate) fn at(mut self, rows: Range<usize>) -> Self {
+        self.rows = Some(rows);
+        self
     }
 
     /// The same with another error that the record could have as well.
@@ -82,12 +78,6 @@ impl SetupFinding {
             file: None,
             lines: None,
         }
-    }
-
-    /// Whether the finding is of a kind, or cannot be told from it.
-    #[must_use]
-    pub fn may_be(&self, kind: SetupKind) -> bool {
-        self.kind == kind || self.equivalent_kinds.contains(&kind)
     }
 }
 

@@ -107,13 +107,9 @@ pub(crate) fn find(samples: &mut Samples<'_>) -> Vec<SetupFinding> {
             format!("{minutes} min of rows that were {what} without a trace in the times, or a clock that jumped by as much"),
         );
     }
-    let is_short = complete[first.at - 1].time_s - complete[0].time_s < LEAST_BEFORE_S;
+    finding.stops = complete[first.at - 1].time_s - complete[0].time_s < LEAST_BEFORE_S;
     samples.end = after.row;
-    vec![if is_short {
-        finding.stopping()
-    } else {
-        finding
-    }]
+    vec![finding]
 }
 
 /// How far the vertical on both sides of the way to a row is from a smooth way.

@@ -1,70 +1,70 @@
 //! Kinds of gross errors.
 
-/// Kind of a gross error of the set-up.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-#[non_exhaustive]
-pub enum SetupKind {
+/// The kinds with their names in results, in the order in which they are looked for.
+macro_rules! kinds {
+    ($($(#[$doc:meta])* $kind:ident = $name:literal,)+) => {
+        /// Kind of a gross error of the set-up.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        #[non_exhaustive]
+        pub enum SetupKind {
+            $($(#[$doc])* $kind,)+
+        }
+
+        impl SetupKind {
+            /// All kinds, in the order in which they are looked for.
+            pub const ALL: [Self; [$($name),+].len()] = [$(Self::$kind),+];
+
+            /// Its name in results.
+            #[must_use]
+            pub fn as_str(self) -> &'static str {
+                match self {
+                    $(Self::$kind => $name,)+
+                }
+            }
+        }
+    };
+}
+
+kinds! {
     /// Times do not rise, or are in another unit.
-    Clock,
+    Clock = "clock",
     /// An accelerometer has no values.
-    Missing,
+    Missing = "missing",
     /// Missing values are written as numbers.
-    MissingCoded,
+    MissingCoded = "missing-coded",
     /// Temperature is in another unit, or none.
-    Temperature,
+    Temperature = "temperature",
     /// Specific force is in another unit.
-    Unit,
+    Unit = "unit",
     /// An accelerometer repeats one value.
-    Stuck,
+    Stuck = "stuck",
     /// An accelerometer does not go beyond a value.
-    Clipped,
+    Clipped = "clipped",
     /// Rows repeat the row before.
-    Repeated,
+    Repeated = "repeated",
     /// Rows repeat an earlier block of rows.
-    Duplicated,
+    Duplicated = "duplicated",
     /// An accelerometer has another gain.
-    Scale,
+    Scale = "scale",
     /// The attitude jumps.
-    Jump,
+    Jump = "jump",
     /// Gravity does not move against the platform.
-    Still,
+    Still = "still",
     /// Gravity turns the wrong way: sign of the latitude, or mirrored axes.
-    Handedness,
+    Handedness = "handedness",
     /// Axes are exchanged or have other signs.
-    Axes,
+    Axes = "axes",
     /// The initial angles are of another convention.
-    Angles,
+    Angles = "angles",
     /// The latitude is wrong.
-    Latitude,
+    Latitude = "latitude",
     /// The initial attitude is wrong.
-    Attitude,
+    Attitude = "attitude",
     /// Specific force at rest is not what the bench description says.
-    Gravity,
+    Gravity = "gravity",
 }
 
 impl SetupKind {
-    /// All kinds, in the order in which they are looked for.
-    pub const ALL: [Self; 18] = [
-        Self::Clock,
-        Self::Missing,
-        Self::MissingCoded,
-        Self::Temperature,
-        Self::Unit,
-        Self::Stuck,
-        Self::Clipped,
-        Self::Repeated,
-        Self::Duplicated,
-        Self::Scale,
-        Self::Jump,
-        Self::Still,
-        Self::Handedness,
-        Self::Axes,
-        Self::Angles,
-        Self::Latitude,
-        Self::Attitude,
-        Self::Gravity,
-    ];
-
     /// Whether it leaves the magnitudes of specific force as they are.
     #[must_use]
     pub fn is_of_directions(self) -> bool {
@@ -81,31 +81,6 @@ impl SetupKind {
             self,
             Self::Stuck | Self::Clipped | Self::Repeated | Self::Duplicated
         )
-    }
-
-    /// Its name in results.
-    #[must_use]
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Self::Clock => "clock",
-            Self::Missing => "missing",
-            Self::MissingCoded => "missing-coded",
-            Self::Temperature => "temperature",
-            Self::Unit => "unit",
-            Self::Stuck => "stuck",
-            Self::Clipped => "clipped",
-            Self::Repeated => "repeated",
-            Self::Duplicated => "duplicated",
-            Self::Scale => "scale",
-            Self::Jump => "jump",
-            Self::Still => "still",
-            Self::Handedness => "handedness",
-            Self::Axes => "axes",
-            Self::Angles => "angles",
-            Self::Latitude => "latitude",
-            Self::Attitude => "attitude",
-            Self::Gravity => "gravity",
-        }
     }
 }
 

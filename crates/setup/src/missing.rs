@@ -1,9 +1,11 @@
 //! Accelerometers without values.
 
+use gyrocal_record::capitalised;
+
 use crate::finding::SetupFinding;
 use crate::kind::SetupKind;
 use crate::samples::Samples;
-use crate::text::{accelerometers, capitalised, rows};
+use crate::text::{accelerometers, rows};
 
 /// An accelerometer that has a value in a smaller share of the rows is missing.
 const LEAST_SHARE: f64 = 0.05;
@@ -29,11 +31,8 @@ pub(crate) fn find(samples: &mut Samples<'_>) -> Vec<SetupFinding> {
     );
     let least = empty.iter().map(|axis| counts[*axis]).min().unwrap_or(0);
     let evidence = format!("values in {least} of {}", rows(measured));
-    let finding = SetupFinding::new(SetupKind::Missing, description, evidence);
+    let mut finding = SetupFinding::new(SetupKind::Missing, description, evidence);
     let is_enough = empty.len() == 1 && samples.bench.initial_angles_deg.is_some();
-    vec![if is_enough {
-        finding
-    } else {
-        finding.stopping()
-    }]
+    finding.stops = !is_enough;
+    vec![finding]
 }

@@ -4,7 +4,7 @@ use crate::finding::SetupFinding;
 use crate::kind::SetupKind;
 use crate::motion;
 use crate::samples::{Complete, Samples};
-use crate::text::{row, rows, span};
+use crate::text::{other_runs, row, rows, span};
 use crate::vector::{minus, norm};
 
 /// The platform moved if gravity turned by so many steps of the converter during the repetition.
@@ -56,11 +56,7 @@ pub(crate) fn find(samples: &mut Samples<'_>) -> Vec<SetupFinding> {
         .iter()
         .flat_map(|run| run[1..].iter().map(|sample| sample.row))
         .collect();
-    let several = if runs.len() > 1 {
-        format!(", and {} more such runs", runs.len() - 1)
-    } else {
-        String::new()
-    };
+    let several = other_runs(runs.len());
     let description = format!(
         "All accelerometers repeat row {} in {}{several}. The repeated rows are left out; look for \
          a logger that hangs, or that writes faster than it reads.",
@@ -69,9 +65,6 @@ pub(crate) fn find(samples: &mut Samples<'_>) -> Vec<SetupFinding> {
     );
     let evidence = format!("{} repeat the row before them", rows(at.len()));
     let finding = SetupFinding::new(SetupKind::Repeated, description, evidence).at(span(&at));
-    for row in at {
-        samples.accel_g[row] = [f64::NAN; 3];
-    }
-    samples.look_again();
+    samples.leave_out(at, &[0, 1, 2]);
     vec![finding]
 }

@@ -77,6 +77,16 @@ impl<'a> Samples<'a> {
         self.square_g2 = self.common_square();
     }
 
+    /// Leaves the values of some axes in some rows out.
+    pub(crate) fn leave_out(&mut self, rows: impl IntoIterator<Item = usize>, axes: &[usize]) {
+        for row in rows {
+            for axis in axes {
+                self.accel_g[row][*axis] = f64::NAN;
+            }
+        }
+        self.look_again();
+    }
+
     /// Rows in which at least one accelerometer has a value.
     pub(crate) fn measured_rows(&self) -> usize {
         let has_value = |row: &&Vector| row.iter().any(|component| !component.is_nan());

@@ -1,22 +1,15 @@
 //! Accelerometers that repeat one value.
 
-use gyrocal_record::AXES;
+use gyrocal_record::{AXES, counted, most_equal};
 
 use crate::coded::of_rows;
 use crate::finding::SetupFinding;
 use crate::kind::SetupKind;
 use crate::samples::Samples;
-use crate::text::{counted, number, row, rows};
+use crate::text::{number, other_runs, row, rows};
 
 /// Equal values in so many successive rows may be stuck; the magnitude decides.
 const LEAST_ROWS: usize = 3;
-
-/// Rows from which on readings that do not change are a fault, and not rounded noise.
-const FROZEN_ROWS: usize = 100;
-
-/// Share of equal values of each axis from which on they are not those of a platform, as gravity
-/// passes through the steps of the coarsest converter.
-const FROZEN_SHARE: f64 = 0.9;
 
 /// Runs of equal values during which the magnitude shows that the force moved.
 pub(crate) fn find(samples: &mut Samples<'_>) -> Vec<SetupFinding> {
@@ -37,39 +30,20 @@ pub(crate) fn find(samples: &mut Samples<'_>) -> Vec<SetupFinding> {
         }
     }
     for (axis, at) in taken {
-        for row in at {
-            samples.accel_g[row][axis] = f64::NAN;
-        }
-    }
-    if !findings.is_empty() {
-        samples.look_again();
+        samples.leave_out(at, &[axis]);
     }
     findings
 }
 
 /// All accelerometers repeat their values: the logger hangs.
 fn frozen(samples: &Samples<'_>) -> Option<SetupFinding> {
-    let most_equal = |axis: usize| {
-        let column = samples.accel_g.iter().map(|row| row[axis]);
-        let mut values: Vec<f64> = column.filter(|value| !value.is_nan()).collect();
-        values.sort_by(f64::total_cmp);
-        let equal = values.chunk_by(|a, b| a == b).map(<[f64]>::len).max();
-        (equal.unwrap_or(0), values.len())
-    };
-    let counts: [(usize, usize); 3] = core::array::from_fn(most_equal);
-    let is_frozen = |(equal, all): &(usize, usize)| *equal as f64 >= FROZEN_SHARE * *all as f64;
-    if samples.accel_g.len() < FROZEN_ROWS || !counts.iter().all(is_frozen) {
-        return None;
-    }
+    let [x, y, z] = most_equal(&samples.accel_g)?;
     let description =
         "The readings hardly ever change, while gravity turns against a platform that \
                        gyros hold. Look for accelerometers, or a logger, that hang."
             .to_owned();
     let evidence = format!(
-        "of x, y and z {}, {} and {} values are the same, in {}",
-        counts[0].0,
-        counts[1].0,
-        counts[2].0,
+        "of x, y and z {x}, {y} and {z} values are the same, in {}",
         rows(samples.accel_g.len())
     );
     Some(
@@ -117,11 +91,7 @@ fn finding(samples: &Samples<'_>, axis: usize, runs: &[Vec<usize>]) -> Option<Se
     let longest = runs.iter().max_by_key(|run| run.len())?;
     let at = runs.concat();
     let value = samples.accel_g[longest[0]][axis];
-    let several = if runs.len() > 1 {
-        format!(", and {} more such runs", runs.len() - 1)
-    } else {
-        String::new()
-    };
+    let several = other_runs(runs.len());
     let description = format!(
         "Accelerometer {} reads {} in {} from row {} on, while gravity moved{several}: look for an \
          accelerometer, or a logger, that hangs.",

@@ -2,7 +2,7 @@
 
 use core::ops::Range;
 
-use gyrocal_record::AXES;
+use gyrocal_record::{AXES, counted};
 
 /// `accelerometer x`, or `accelerometers x and y`.
 pub(crate) fn accelerometers(axes: &[usize]) -> String {
@@ -15,31 +15,22 @@ pub(crate) fn accelerometers(axes: &[usize]) -> String {
     }
 }
 
-/// The same at the start of a sentence.
-pub(crate) fn capitalised(text: &str) -> String {
-    let mut letters = text.chars();
-    let first = letters.next().map(|letter| letter.to_uppercase());
-    first
-        .into_iter()
-        .flatten()
-        .chain(letters)
-        .collect::<String>()
-}
-
 /// `1 row` or `12 rows`.
 pub(crate) fn rows(count: usize) -> String {
     counted(count, "row")
 }
 
-/// A number of things, in the singular for one.
-pub(crate) fn counted(count: usize, thing: &str) -> String {
-    let ending = if count == 1 { "" } else { "s" };
-    format!("{count} {thing}{ending}")
-}
-
 /// Rows counted from 1, as people count them.
 pub(crate) fn row(index: usize) -> usize {
     index + 1
+}
+
+/// What a finding on the longest of some runs tells of the others.
+pub(crate) fn other_runs(runs: usize) -> String {
+    match runs {
+        0 | 1 => String::new(),
+        all => format!(", and {} more such runs", all - 1),
+    }
 }
 
 /// From the first to after the last of some rising rows.

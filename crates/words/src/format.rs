@@ -1,5 +1,6 @@
 //! Numbers in sentences.
 
+pub use gyrocal_record::{capitalised, counted};
 use gyrocal_statistics::format;
 
 /// Estimate and sigma with the digits that the sigma allows: `0.00133 ± 0.00008`.
@@ -13,26 +14,11 @@ pub(crate) fn short(value: f64) -> String {
     format::short(value, 4)
 }
 
-/// `1 effect`, `2 effects`.
-#[must_use]
-pub fn counted(count: usize, thing: &str) -> String {
-    let plural = if count == 1 { "" } else { "s" };
-    format!("{count} {thing}{plural}")
-}
-
 /// Rows and duration of a record: `2880 rows over 2.00 days`.
 #[must_use]
 pub fn size(rows: usize, duration_s: f64) -> String {
     let days = duration_s / 86_400.0;
     format!("{} over {days:.2} days", counted(rows, "row"))
-}
-
-/// The first letter as a capital.
-#[must_use]
-pub fn capitalised(text: &str) -> String {
-    let mut letters = text.chars();
-    let first = letters.next().map(|first| first.to_uppercase().to_string());
-    first.unwrap_or_default() + letters.as_str()
 }
 
 /// What stands in the place of a p-value that was not computed.

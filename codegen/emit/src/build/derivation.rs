@@ -100,7 +100,7 @@ impl Derivation {
     ///
     /// A committed file exists and cannot be read.
     pub fn stale(&self) -> Result<Vec<Stale>, Error> {
-        self.collect(self.declaration.modules.iter().map(|module| {
+        Self::collect(self.declaration.modules.iter().map(|module| {
             let path = self.resolve(&module.rust);
             let reason = inspect(&path, &self.fingerprint)?;
             Ok((path, reason))
@@ -116,7 +116,7 @@ impl Derivation {
     pub fn build(&self, out_dir: impl AsRef<Path>) -> Result<Outcome, Error> {
         let stale = self.stale()?;
         if stale.is_empty() {
-            return Ok(Outcome::fresh(self));
+            return Ok(Outcome::new(self, stale, None));
         }
         let out_dir = out_dir.as_ref();
         let mut derived_before = true;
@@ -140,7 +140,7 @@ impl Derivation {
             }
             Some(derived.timings)
         };
-        Ok(Outcome::rederived(self, stale, timings))
+        Ok(Outcome::new(self, stale, timings))
     }
 
     /// Runs the whole derivation, whatever is committed, and writes nothing but the
@@ -186,7 +186,7 @@ impl Derivation {
     /// [`Error::Stale`] with every file that differs; otherwise as [`derive`](Self::derive).
     pub fn check(&self) -> Result<Timings, Error> {
         let derived = self.derive()?;
-        let mut stale = self.collect(self.committed(&derived).map(|(path, text)| {
+        let mut stale = Self::collect(self.committed(&derived).map(|(path, text)| {
             let reason = compare(&path, text)?;
             Ok((path, reason))
         }))?;
@@ -236,7 +236,6 @@ impl Derivation {
     }
 
     fn collect(
-        &self,
         files: impl Iterator<Item = Result<(PathBuf, Option<Reason>), Error>>,
     ) -> Result<Vec<Stale>, Error> {
         files

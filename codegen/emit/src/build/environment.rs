@@ -22,15 +22,6 @@ pub(super) struct Environment {
     pub(super) created: bool,
 }
 
-impl Environment {
-    fn existing(interpreter: PathBuf) -> Self {
-        Self {
-            interpreter,
-            created: false,
-        }
-    }
-}
-
 /// Finds or makes the environment, below the directory `environments`.
 ///
 /// An interpreter named by the settings that has the pinned CasADi is used as it is; so
@@ -41,17 +32,23 @@ pub(super) fn obtain(
     settings: &Settings,
     environments: &Path,
 ) -> Result<Environment, Error> {
+    let existing = |interpreter| {
+        Ok(Environment {
+            interpreter,
+            created: false,
+        })
+    };
     let base = find(&declaration.python, settings)?;
     if settings.python.is_some() && base.has_casadi(&lock.casadi) {
-        return Ok(Environment::existing(base.executable));
+        return existing(base.executable);
     }
     let name = format!("python-{}-{}", base.version, &sha256(&lock.text)[..12]);
     let directory = environments.join(&name);
     if is_complete(&directory) {
-        return Ok(Environment::existing(interpreter_of(&directory)));
+        return existing(interpreter_of(&directory));
     }
     if settings.python.is_none() && base.has_casadi(&lock.casadi) {
-        return Ok(Environment::existing(base.executable));
+        return existing(base.executable);
     }
     require_means(declaration, lock, settings, &base)?;
 
@@ -61,7 +58,7 @@ pub(super) fn obtain(
     // Released when `guard` is dropped, and by the system when the process dies.
     guard.lock().map_err(at("lock", &guard_path))?;
     if is_complete(&directory) {
-        return Ok(Environment::existing(interpreter_of(&directory)));
+        return existing(interpreter_of(&directory));
     }
     make(&base, lock, &directory)?;
     Ok(Environment {

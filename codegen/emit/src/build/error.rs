@@ -1,4 +1,3 @@
-use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use super::committed::Stale;
@@ -186,19 +185,9 @@ pub(super) fn at(
 /// The last lines of a tool's output, indented.
 pub(super) fn tail(output: &[u8], lines: usize) -> String {
     let text = String::from_utf8_lossy(output);
-    let all: Vec<&str> = text
-        .lines()
-        .filter(|line| !line.trim().is_empty())
-        .collect();
-    all[all.len().saturating_sub(lines)..]
-        .iter()
-        .fold(String::new(), |mut tail, line| {
-            if !tail.is_empty() {
-                tail.push('\n');
-            }
-            let _ = write!(tail, "    {line}");
-            tail
-        })
+    let all = text.lines().filter(|line| !line.trim().is_empty());
+    let all: Vec<String> = all.map(|line| format!("    {line}")).collect();
+    all[all.len().saturating_sub(lines)..].join("\n")
 }
 
 fn list(found: &[String]) -> String {

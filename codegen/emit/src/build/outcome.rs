@@ -20,7 +20,12 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    pub(super) fn fresh(derivation: &Derivation) -> Self {
+    /// With the files that could not be used, and what was derived.
+    pub(super) fn new(
+        derivation: &Derivation,
+        stale: Vec<Stale>,
+        timings: Option<Timings>,
+    ) -> Self {
         // The directory stands for all its files, those to come too. A path that does
         // not exist would run the build script every time.
         let mut inputs = vec![derivation.directory.clone()];
@@ -29,32 +34,11 @@ impl Outcome {
         }
         inputs.dedup();
         Self {
-            stale: Vec::new(),
-            timings: None,
+            stale,
+            timings,
             write_command: derivation.write_command().to_owned(),
             inputs,
         }
-    }
-
-    pub(super) fn rederived(
-        derivation: &Derivation,
-        stale: Vec<Stale>,
-        timings: Option<Timings>,
-    ) -> Self {
-        Self {
-            stale,
-            timings,
-            ..Self::fresh(derivation)
-        }
-    }
-
-    /// Result for the module of a file without a committed copy.
-    pub(super) fn of_file(derivation: &Derivation, file: &Path, timings: Option<Timings>) -> Self {
-        Self {
-            timings,
-            ..Self::fresh(derivation)
-        }
-        .watching(file)
     }
 
     pub(super) fn watching(mut self, file: &Path) -> Self {

@@ -143,7 +143,8 @@ impl Variant {
                 true => None,
                 false => Some(derivation.write()?.timings),
             };
-            return Ok(Outcome::of_file(&self.derivation, &self.file, timings));
+            let outcome = Outcome::new(&self.derivation, Vec::new(), timings);
+            return Ok(outcome.watching(&self.file));
         };
         if self.derivation.settings.write && !self.stale()?.is_empty() {
             self.derivation.write()?;

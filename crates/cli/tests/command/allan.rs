@@ -1,6 +1,6 @@
 //! `gyrocal allan`.
 
-use crate::folder::Folder;
+use crate::folder::{Folder, assert_says};
 
 /// The thousand numbers of NIST SP 1065, section 12.4.
 fn log() -> String {
@@ -17,23 +17,11 @@ fn log() -> String {
 fn deviations_are_printed_and_written() {
     let folder = Folder::new();
     folder.put("l.csv", log());
-    let text = folder.succeed(&[
-        "allan",
-        "l.csv",
-        "--columns",
-        "rate",
-        "--rate-hz",
-        "10",
-        "--scale",
-        "2",
-        "--unit",
-        "deg/h",
-        "--json",
-        "o.json",
-    ]);
+    let text = folder
+        .succeed("allan l.csv --columns rate --rate-hz 10 --scale 2 --unit deg/h --json o.json");
     // The handbook prints 2.922319e-1 for the first.
-    assert!(text.contains("5.8446e-1"), "{text}");
-    let json: serde_json::Value = serde_json::from_str(&folder.text("o.json")).unwrap();
+    assert_says(&text, "5.8446e-1");
+    let json: serde_json::Value = folder.json("o.json");
     let point = &json["columns"][0]["points"][0];
     assert!((point["deviation"].as_f64().unwrap() / 0.584_463_8 - 1.0).abs() < 1e-6);
     assert!(point["low"].as_f64().unwrap() < 0.5844 && point["high"].as_f64().unwrap() > 0.5845);
@@ -44,32 +32,19 @@ fn deviations_are_printed_and_written() {
 fn bad_input_is_told() {
     let folder = Folder::new();
     folder.put("l.csv", log());
-    let errors = folder.fail(&["allan", "l.csv", "--columns", "rates", "--rate-hz", "10"]);
-    assert!(errors.contains("expected a column `rates`"), "{errors}");
-    assert!(errors.contains("the columns are rate, other"), "{errors}");
+    let errors = folder.fail("allan l.csv --columns rates --rate-hz 10");
+    assert_says(&errors, "expected a column `rates`");
+    assert_says(&errors, "the columns are rate, other");
     folder.put("n.csv", "rate\n1\n2\nx\n");
-    let errors = folder.fail(&["allan", "n.csv", "--columns", "rate", "--rate-hz", "10"]);
-    assert!(
-        errors.contains("n.csv:4:1: found `x`, expected a finite number"),
-        "{errors}"
-    );
+    let errors = folder.fail("allan n.csv --columns rate --rate-hz 10");
+    assert_says(&errors, "n.csv:4:1: found `x`, expected a finite number");
     // The other column of the log holds ones.
-    let errors = folder.fail(&[
-        "allan",
-        "l.csv",
-        "--columns",
-        "rate,other",
-        "--rate-hz",
-        "10",
-    ]);
-    assert!(
-        errors.contains("found a column `other` that never changes"),
-        "{errors}"
-    );
+    let errors = folder.fail("allan l.csv --columns rate,other --rate-hz 10");
+    assert_says(&errors, "found a column `other` that never changes");
     folder.put("s.csv", "rate\n1\n2\n");
-    let errors = folder.fail(&["allan", "s.csv", "--columns", "rate", "--rate-hz", "10"]);
-    assert!(errors.contains("found 2 samples"), "{errors}");
-    let output = folder.run(&["allan", "l.csv", "--columns", "rate", "--rate-hz", "0"]);
+    let errors = folder.fail("allan s.csv --columns rate --rate-hz 10");
+    assert_says(&errors, "found 2 samples");
+    let output = folder.run("allan l.csv --columns rate --rate-hz 0");
     assert_eq!(output.status.code(), Some(2));
 }
 
@@ -81,11 +56,11 @@ fn numbers_that_overflow_are_refused() {
     folder.put("l.csv", "rate\n".to_owned() + &rows.collect::<String>());
     let refused = |rate_hz: &str, scale: &str| {
         let options = ["--rate-hz", rate_hz, "--scale", scale];
-        folder.fail(&[&["allan", "l.csv", "--columns", "rate"], &options[..]].concat())
+        folder.fail([&["allan", "l.csv", "--columns", "rate"], &options[..]].concat())
     };
     for (rate_hz, scale) in [("10", "1e280"), ("1e-308", "1"), ("1e308", "1")] {
         let errors = refused(rate_hz, scale);
-        assert!(errors.contains("found a deviation of"), "{errors}");
+        assert_says(&errors, "found a deviation of");
     }
     let errors = refused("10", "1e300");
     let expected = "values of `rate` that are too large when multiplied by 1e300";
@@ -94,7 +69,7 @@ fn numbers_that_overflow_are_refused() {
     for scale in ["1e140", "1e-165"] {
         let options = ["--rate-hz", "10", "--scale", scale];
         let said =
-            folder.succeed(&[&["allan", "l.csv", "--columns", "rate"], &options[..]].concat());
+            folder.succeed([&["allan", "l.csv", "--columns", "rate"], &options[..]].concat());
         assert!(!said.contains("NaN") && !said.contains("inf"), "{said}");
     }
 }
@@ -122,22 +97,12 @@ fn a_description_stands_for_columns_and_rate() {
          columns = [\"gx\", \"gy\", \"gz\"]\nunit = \"deg/s\"\n[accel]\ncolumns = [\"ax\", \"ay\", \
          \"az\"]\nunit = \"g\"\n",
     );
-    let text = folder.succeed(&[
-        "allan",
-        "l.txt",
-        "--log-description",
-        "log.toml",
-        "--estimator",
-        "hadamard",
-        "--json",
-        "o.json",
-    ]);
-    assert!(text.contains("steady clock"), "{text}");
-    assert!(
-        text.contains("Overlapping Hadamard deviation") && text.contains("deviation, deg/h"),
-        "{text}"
-    );
-    let json: serde_json::Value = serde_json::from_str(&folder.text("o.json")).unwrap();
+    let text =
+        folder.succeed("allan l.txt --log-description log.toml --estimator hadamard --json o.json");
+    assert_says(&text, "steady clock");
+    assert_says(&text, "Overlapping Hadamard deviation");
+    assert_says(&text, "deviation, deg/h");
+    let json: serde_json::Value = folder.json("o.json");
     let noise = &json["columns"][0]["noise"];
     let walk = &noise["coefficients"][1];
     assert_eq!(walk["part"], "random_walk");
@@ -161,20 +126,11 @@ fn a_sample_that_no_noise_explains_is_left_out_and_told() {
             text + if line == 501 { "900,1" } else { row } + "\n"
         });
     folder.put("l.csv", wild);
-    let arguments = [
-        "allan",
-        "l.csv",
-        "--columns",
-        "rate",
-        "--rate-hz",
-        "10",
-        "--json",
-        "o.json",
-    ];
-    let text = folder.succeed(&arguments);
+    let arguments = "allan l.csv --columns rate --rate-hz 10 --json o.json";
+    let text = folder.succeed(arguments);
     assert!(text.starts_with("BAD SAMPLES  1 sample"), "{text}");
-    assert!(text.contains("sample 501 at 50 s (900 "), "{text}");
-    let json: serde_json::Value = serde_json::from_str(&folder.text("o.json")).unwrap();
+    assert_says(&text, "sample 501 at 50 s (900 ");
+    let json: serde_json::Value = folder.json("o.json");
     let column = &json["columns"][0];
     assert_eq!(column["left_out"]["samples"][0]["sample"], 501);
     // The handbook's first deviation, of which the median in the place of one sample takes a thousandth.

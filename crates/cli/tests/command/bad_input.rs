@@ -9,16 +9,9 @@ use std::fs;
 use gyrocal_answer::{Answer, Verdict};
 use gyrocal_record::{CalibrationReport, FitVerdict, SetupProblem};
 
-use crate::folder::{Folder, example};
+use crate::folder::{Folder, assert_says, example};
 
-const JSON: [&str; 6] = [
-    "calibrate",
-    "r.csv",
-    "--bench",
-    "b.toml",
-    "--json",
-    "o.json",
-];
+const JSON: &str = "calibrate r.csv --bench b.toml --json o.json";
 
 /// Header and the first rows of the record that ships, one a minute.
 fn record(rows: usize) -> String {
@@ -36,7 +29,7 @@ fn refused(record: impl AsRef<[u8]>, bench: impl AsRef<[u8]>) -> String {
     let folder = Folder::new();
     folder.put("r.csv", record);
     folder.put("b.toml", bench);
-    folder.fail(&JSON)
+    folder.fail(JSON)
 }
 
 /// The record with one line, counted from 1, replaced.
@@ -47,17 +40,12 @@ fn with_line(rows: usize, line: usize, replacement: &str) -> String {
     lines.join("\n") + "\n"
 }
 
-#[track_caller]
-fn assert_says(errors: &str, message: &str) {
-    assert!(errors.contains(message), "{message}\nis not in\n{errors}");
-}
-
 #[test]
 fn what_the_cases_start_from_is_good() {
     let folder = Folder::new();
     folder.put("r.csv", record(12));
     folder.put("b.toml", bench());
-    folder.succeed(&JSON);
+    folder.succeed(JSON);
     assert_eq!(folder.names(), ["b.toml", "o.json", "r.csv"]);
 }
 
@@ -120,8 +108,8 @@ fn wrong_setup(record: impl AsRef<[u8]>, bench: impl AsRef<[u8]>) -> (String, Se
     let folder = Folder::new();
     folder.put("r.csv", record);
     folder.put("b.toml", bench);
-    let errors = folder.fail_writing(&JSON, &["o.json"]);
-    let mut report: CalibrationReport = serde_json::from_str(&folder.text("o.json")).unwrap();
+    let errors = folder.fail_writing(JSON, &["o.json"]);
+    let mut report: CalibrationReport = folder.json("o.json");
     assert_eq!(report.verdict, FitVerdict::Setup);
     assert!(report.coefficients.is_empty() && report.nis_mean.is_none());
     assert_eq!(report.setup.len(), 1, "{:?}", report.setup);
@@ -130,8 +118,8 @@ fn wrong_setup(record: impl AsRef<[u8]>, bench: impl AsRef<[u8]>) -> (String, Se
     assert_says(&errors, "o.json: the result for programs");
     assert!(problem.stops);
     // The diagnosis says the same.
-    folder.succeed(&["diagnose", "r.csv", "--bench", "b.toml", "--json", "d.json"]);
-    let diagnosis: Answer = serde_json::from_str(&folder.text("d.json")).unwrap();
+    folder.succeed("diagnose r.csv --bench b.toml --json d.json");
+    let diagnosis: Answer = folder.json("d.json");
     assert_eq!(diagnosis.verdict, Verdict::Setup);
     assert_eq!(diagnosis.setup, std::slice::from_ref(&problem));
     (errors, problem)
@@ -209,16 +197,16 @@ fn an_axis_in_another_unit_is_corrected_told_and_used() {
     });
     folder.put("r.csv", lines.collect::<String>());
     folder.put("b.toml", bench());
-    let said = folder.succeed(&JSON);
+    let said = folder.succeed(JSON);
     assert_says(&said.replace('\n', " "), "Its unit seems to be m/s^2.");
-    let report: CalibrationReport = serde_json::from_str(&folder.text("o.json")).unwrap();
+    let report: CalibrationReport = folder.json("o.json");
     assert_eq!(report.setup.len(), 1);
     assert_eq!(
         (&*report.setup[0].kind, report.setup[0].stops),
         ("scale", false)
     );
-    folder.succeed(&["diagnose", "r.csv", "--bench", "b.toml", "--json", "d.json"]);
-    let diagnosis: Answer = serde_json::from_str(&folder.text("d.json")).unwrap();
+    folder.succeed("diagnose r.csv --bench b.toml --json d.json");
+    let diagnosis: Answer = folder.json("d.json");
     assert_eq!(diagnosis.setup, report.setup);
     assert!(diagnosis.coefficients.is_some());
 }
@@ -250,21 +238,21 @@ fn a_temperature_in_kelvins_is_told_with_its_lines_and_converted() {
     };
     folder.put("r.csv", with(273.15));
     folder.put("b.toml", bench());
-    let said = folder.succeed(&JSON).replace('\n', " ");
+    let said = folder.succeed(JSON).replace('\n', " ");
     assert_says(&said, "It seems to be in K");
     assert_says(&said, "r.csv:2-301");
-    let report: CalibrationReport = serde_json::from_str(&folder.text("o.json")).unwrap();
+    let report: CalibrationReport = folder.json("o.json");
     let [problem] = &report.setup[..] else {
         panic!("{:?}", report.setup)
     };
     assert_eq!((&*problem.kind, problem.stops), ("temperature", false));
     assert_eq!(problem.lines, Some([2, 301]));
-    folder.succeed(&["diagnose", "r.csv", "--bench", "b.toml", "--json", "d.json"]);
-    let told: Answer = serde_json::from_str(&folder.text("d.json")).unwrap();
+    folder.succeed("diagnose r.csv --bench b.toml --json d.json");
+    let told: Answer = folder.json("d.json");
     assert_eq!(told.setup, report.setup);
     folder.put("r.csv", with(0.0));
-    folder.succeed(&JSON);
-    let report: CalibrationReport = serde_json::from_str(&folder.text("o.json")).unwrap();
+    folder.succeed(JSON);
+    let report: CalibrationReport = folder.json("o.json");
     assert_eq!(report.setup, []);
 }
 
@@ -338,7 +326,7 @@ fn bad_bench_files_are_shown_where_they_are_wrong() {
         assert_eq!(good.matches(right).count(), 1, "{right}");
         let errors = refused(record(20), good.replace(right, wrong));
         assert_says(&errors, message);
-        assert!(errors.contains("here"), "{errors}");
+        assert_says(&errors, "here");
     }
     let errors = refused(record(20), "");
     assert_says(
@@ -350,9 +338,9 @@ fn bad_bench_files_are_shown_where_they_are_wrong() {
 #[test]
 fn files_that_are_not_there_are_named() {
     let folder = Folder::new();
-    assert_says(&folder.fail(&JSON), "b.toml: cannot be read: ");
+    assert_says(&folder.fail(JSON), "b.toml: cannot be read: ");
     folder.put("b.toml", bench());
-    assert_says(&folder.fail(&JSON), "r.csv: cannot be read: ");
+    assert_says(&folder.fail(JSON), "r.csv: cannot be read: ");
 }
 
 #[test]
@@ -362,7 +350,7 @@ fn an_output_that_cannot_be_written_is_named() {
     folder.put("b.toml", bench());
     fs::create_dir(folder.path("taken")).unwrap();
     for path in ["no/such/folder/o.json", "taken"] {
-        let errors = folder.fail(&["calibrate", "r.csv", "--bench", "b.toml", "--json", path]);
+        let errors = folder.fail(["calibrate", "r.csv", "--bench", "b.toml", "--json", path]);
         assert_says(&errors, &format!("{path}: cannot be written: "));
     }
 }
@@ -373,6 +361,6 @@ fn a_refused_input_leaves_an_older_output_as_it_was() {
     folder.put("r.csv", record(5));
     folder.put("b.toml", bench());
     folder.put("o.json", "old");
-    folder.fail(&JSON);
+    folder.fail(JSON);
     assert_eq!(folder.text("o.json"), "old");
 }

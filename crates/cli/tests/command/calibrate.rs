@@ -7,17 +7,10 @@ use gyrocal_record::{Bench, CALIBRATION_SCHEMA_VERSION, CalibrationReport, Recor
 use gyrocal_truth::Scenario;
 use serde_json::Value;
 
-use crate::folder::{Folder, example, repository};
+use crate::folder::{Folder, assert_says, example, repository};
 
-const PLAIN: [&str; 4] = ["calibrate", "r.csv", "--bench", "b.toml"];
-const JSON: [&str; 6] = [
-    "calibrate",
-    "r.csv",
-    "--bench",
-    "b.toml",
-    "--json",
-    "o.json",
-];
+const PLAIN: &str = "calibrate r.csv --bench b.toml";
+const JSON: &str = "calibrate r.csv --bench b.toml --json o.json";
 
 /// A folder with the record that ships and its bench description.
 fn folder() -> Folder {
@@ -35,8 +28,8 @@ fn truth() -> Scenario {
 #[test]
 fn the_record_that_ships_gives_the_coefficients_of_its_scenario() {
     let folder = folder();
-    let said = folder.succeed(&JSON);
-    let report: CalibrationReport = serde_json::from_str(&folder.text("o.json")).unwrap();
+    let said = folder.succeed(JSON);
+    let report: CalibrationReport = folder.json("o.json");
     let truth = truth().coefficients.named();
     assert_eq!(report.coefficients.len(), truth.len());
     for (found, (name, value, unit)) in report.coefficients.iter().zip(truth) {
@@ -54,14 +47,8 @@ fn the_record_that_ships_gives_the_coefficients_of_its_scenario() {
         assert!(found.determined, "{name}");
     }
     assert!(said.starts_with("CALIBRATED  "), "{said}");
-    assert!(
-        said.contains("\nr.csv: 4321 rows over 3.00 days\n"),
-        "{said}"
-    );
-    assert!(
-        said.contains("Data, model and declared noise agree. Mean NIS"),
-        "{said}"
-    );
+    assert_says(&said, "\nr.csv: 4321 rows over 3.00 days\n");
+    assert_says(&said, "Data, model and declared noise agree. Mean NIS");
     assert!(
         said.ends_with("o.json: the result for programs\n"),
         "{said}"
@@ -71,8 +58,8 @@ fn the_record_that_ships_gives_the_coefficients_of_its_scenario() {
 #[test]
 fn the_table_shows_what_the_json_says_rounded_by_its_sigma() {
     let folder = folder();
-    let said = folder.succeed(&JSON);
-    let report: CalibrationReport = serde_json::from_str(&folder.text("o.json")).unwrap();
+    let said = folder.succeed(JSON);
+    let report: CalibrationReport = folder.json("o.json");
     for coefficient in report.coefficients {
         // The table of the first screen comes before that of the details.
         let rows = said.lines();
@@ -82,7 +69,7 @@ fn the_table_shows_what_the_json_says_rounded_by_its_sigma() {
         let [_, row, meaning, ..] = rows[..] else {
             panic!("no {} in {said}", coefficient.name);
         };
-        assert!(meaning.contains(" of gyro "), "{meaning}");
+        assert_says(meaning, " of gyro ");
         let cells: Vec<&str> = row.split_whitespace().collect();
         let [estimate, sigma] = [cells[1], cells[3]].map(|cell| cell.parse::<f64>().unwrap());
         // Half a unit of the second digit of sigma is at most a twentieth of it.
@@ -99,8 +86,8 @@ fn the_table_shows_what_the_json_says_rounded_by_its_sigma() {
 #[expect(clippy::cognitive_complexity, reason = "one field after the other")]
 fn the_json_has_every_field_of_its_contract() {
     let folder = folder();
-    folder.succeed_as_is(&JSON);
-    let json: Value = serde_json::from_str(&folder.text("o.json")).unwrap();
+    folder.succeed_as_is(JSON);
+    let json: Value = folder.json("o.json");
     assert_eq!(json["schema_version"], CALIBRATION_SCHEMA_VERSION);
     assert_eq!(json["method"], "batch");
     // One pass of the filter is a good start; each further step squares what is left.
@@ -185,7 +172,7 @@ fn final_angles_are_those_of_the_simulated_platform() {
     let folder = folder();
     let scenario = repository("examples/data/three_days.scenario.toml");
     let scenario = scenario.to_str().unwrap();
-    folder.succeed(&[
+    folder.succeed([
         "simulate",
         scenario,
         "--out",
@@ -193,9 +180,9 @@ fn final_angles_are_those_of_the_simulated_platform() {
         "--json",
         "t.json",
     ]);
-    let said = folder.succeed(&JSON);
+    let said = folder.succeed(JSON);
     let [found, expected] = ["o.json", "t.json"].map(|name| -> [f64; 3] {
-        let json: Value = serde_json::from_str(&folder.text(name)).unwrap();
+        let json: Value = folder.json(name);
         serde_json::from_value(json["final_angles_deg"].clone()).unwrap()
     });
     for (found, expected) in found.iter().zip(expected) {
@@ -213,7 +200,7 @@ pub(crate) fn unwrapped(said: &str) -> String {
 
 #[test]
 fn the_effect_of_latitude_is_that_of_the_symmetry() {
-    let said = unwrapped(&folder().succeed(&PLAIN));
+    let said = unwrapped(&folder().succeed(PLAIN));
     let (_, rest) = said.split_once("mean of the three D_I by ").unwrap();
     let shift: f64 = rest.split(' ').next().unwrap().parse().unwrap();
     // Turning the meridian by 1 arc second is lowering all D_I by rate / cos(latitude) times it,
@@ -221,26 +208,22 @@ fn the_effect_of_latitude_is_that_of_the_symmetry() {
     let rate_deg_per_h = 15.041_07;
     let full = rate_deg_per_h * (1.0_f64 / 3600.0).to_radians() / 48.2_f64.to_radians().cos();
     assert!((0.5..1.05).contains(&(shift / full)), "{shift} of {full}");
-    assert!(said.contains("gives no latitude_sigma_deg"), "{said}");
+    assert_says(&said, "gives no latitude_sigma_deg");
 }
 
 fn report(folder: &Folder) -> CalibrationReport {
-    serde_json::from_str(&folder.text("o.json")).unwrap()
+    folder.json("o.json")
 }
 
 #[test]
 fn the_filter_of_the_paper_does_not_fit_what_it_did_not_simulate() {
     let folder = folder();
-    let mut arguments = JSON.to_vec();
-    arguments.push("--paper");
-    let said = folder.succeed(&arguments);
-    assert!(
-        said.contains(
-            "The innovations are larger than the declared noise: the sigmas are too small."
-        ),
-        "{said}"
+    let said = folder.succeed(format!("{JSON} --paper"));
+    assert_says(
+        &said,
+        "The innovations are larger than the declared noise: the sigmas are too small.",
     );
-    let json: Value = serde_json::from_str(&folder.text("o.json")).unwrap();
+    let json: Value = folder.json("o.json");
     assert_eq!(json["verdict"], "too-large");
     assert!(json["nis_mean"].as_f64().unwrap() > 30.0);
 }
@@ -257,8 +240,8 @@ fn missing_values_and_other_priors_are_honoured() {
     let mut narrow = bench.clone();
     narrow.prior.gg_sigma_deg_per_h_per_g2 = [1e-6; 3];
     narrow.write(&folder.path("b.toml")).unwrap();
-    folder.succeed(&JSON);
-    let report: CalibrationReport = serde_json::from_str(&folder.text("o.json")).unwrap();
+    folder.succeed(JSON);
+    let report: CalibrationReport = folder.json("o.json");
     // Every third row of 4321, the first included, has no value.
     assert_eq!(report.rows, 2880);
     for (i, coefficient) in report.coefficients.iter().enumerate() {
@@ -271,7 +254,7 @@ fn missing_values_and_other_priors_are_honoured() {
 fn verbose_tells_more() {
     let folder = folder();
     let [plain, detailed, reporting] = ["--color=auto", "-v", "-vv"].map(|more| {
-        let output = folder.run(&[&PLAIN[..], &[more]].concat());
+        let output = folder.run(format!("{PLAIN} {more}"));
         let errors = String::from_utf8(output.stderr).unwrap();
         (String::from_utf8(output.stdout).unwrap(), errors)
     });

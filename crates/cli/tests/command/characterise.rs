@@ -6,11 +6,11 @@ use std::time::{Duration, Instant};
 
 use gyrocal_evaluation::CharacteriseReport;
 
-use crate::folder::Folder;
+use crate::folder::{Folder, assert_says};
 
 fn said(folder: &Folder, more: &str) -> String {
     let line = format!("characterise {more}");
-    folder.succeed(&line.split_whitespace().collect::<Vec<_>>())
+    folder.succeed(line.split_whitespace().collect::<Vec<_>>())
 }
 
 #[test]
@@ -20,11 +20,9 @@ fn a_killed_run_goes_on_where_it_was_and_says_the_same() {
         "--cell cubic --runs 3 --seed 5 --method bic --results runs --json o.json --markdown o.md";
     let fresh = Folder::new();
     let expected = said(&fresh, line);
-    assert!(
-        expected.contains("silent") && expected.contains(">= 0.75"),
-        "{expected}"
-    );
-    let report: CharacteriseReport = serde_json::from_str(&fresh.text("o.json")).unwrap();
+    assert_says(&expected, "silent");
+    assert_says(&expected, ">= 0.75");
+    let report: CharacteriseReport = fresh.json("o.json");
     assert_eq!(report.cells.len(), 1);
     let cell = &report.cells[0];
     assert_eq!((cell.cell.as_str(), cell.seeds), ("cubic", [5, 8]));
@@ -72,20 +70,10 @@ fn a_killed_run_goes_on_where_it_was_and_says_the_same() {
     assert_eq!(folder.text("o.md"), fresh.text("o.md"));
 
     // Results of other methods are other results.
-    let errors = folder.fail(&[
-        "characterise",
-        "--cell",
-        "cubic",
-        "--runs",
-        "1",
-        "--results",
-        "runs",
-    ]);
-    assert!(
-        errors.contains(
-            "results of another campaign, of methods `bic`, expected `nis, ljung-box, bic, stls`"
-        ),
-        "{errors}"
+    let errors = folder.fail("characterise --cell cubic --runs 1 --results runs");
+    assert_says(
+        &errors,
+        "results of another campaign, of methods `bic`, expected `nis, ljung-box, bic, stls`",
     );
 
     // Five records that are not silent show that fewer than three quarters are.
@@ -93,7 +81,7 @@ fn a_killed_run_goes_on_where_it_was_and_says_the_same() {
     let mut lines = text.lines();
     let mut missed = lines.next().unwrap().to_owned();
     let case = lines.next().unwrap();
-    assert!(case.contains("\"verdict\":"), "{case}");
+    assert_says(case, "\"verdict\":");
     let mut value: serde_json::Value = serde_json::from_str(case).unwrap();
     for seed in 5..10 {
         value["done"]["seed"] = seed.into();
@@ -104,7 +92,7 @@ fn a_killed_run_goes_on_where_it_was_and_says_the_same() {
     let line = "characterise --cell cubic --runs 5 --seed 5 --method bic --results runs";
     let run = |more: &str| {
         let line = format!("{line} {more}");
-        folder.run(&line.split_whitespace().collect::<Vec<_>>())
+        folder.run(line.split_whitespace().collect::<Vec<_>>())
     };
     let plain = run("");
     assert_eq!(plain.status.code(), Some(0));
@@ -120,7 +108,7 @@ fn a_killed_run_goes_on_where_it_was_and_says_the_same() {
 fn a_result_goes_into_the_folder_that_is_made_for_the_records() {
     let folder = Folder::new();
     let line = "characterise --cell cubic --runs 1 --method none --results runs --json runs/o.json";
-    folder.succeed(&line.split_whitespace().collect::<Vec<_>>());
+    folder.succeed(line.split_whitespace().collect::<Vec<_>>());
     assert!(folder.path("runs/cubic.jsonl").exists());
     assert!(folder.text("runs/o.json").contains("\"cubic\""));
 }
@@ -128,19 +116,13 @@ fn a_result_goes_into_the_folder_that_is_made_for_the_records() {
 #[test]
 fn bad_input_is_refused_before_any_work() {
     let folder = Folder::new();
-    let errors = folder.fail(&["characterise", "--json", "nowhere/o.json"]);
-    assert!(
-        errors.contains("nowhere/o.json: cannot be written"),
-        "{errors}"
-    );
-    let errors = folder.fail(&["characterise", "--results", "r", "--json", "r/s/o.json"]);
-    assert!(errors.contains("r/s/o.json: cannot be written"), "{errors}");
+    let errors = folder.fail("characterise --json nowhere/o.json");
+    assert_says(&errors, "nowhere/o.json: cannot be written");
+    let errors = folder.fail("characterise --results r --json r/s/o.json");
+    assert_says(&errors, "r/s/o.json: cannot be written");
     folder.put("notes", "a file");
-    let errors = folder.fail(&["characterise", "--results", "notes"]);
-    assert!(
-        errors.contains("notes: the results cannot be kept there"),
-        "{errors}"
-    );
+    let errors = folder.fail("characterise --results notes");
+    assert_says(&errors, "notes: the results cannot be kept there");
     for (more, message) in [
         (
             "--cell d7",
@@ -163,7 +145,7 @@ fn bad_input_is_refused_before_any_work() {
         ),
     ] {
         let line = format!("characterise {more}");
-        let output = folder.run(&line.split_whitespace().collect::<Vec<_>>());
+        let output = folder.run(line.split_whitespace().collect::<Vec<_>>());
         let errors = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(2), "{errors}");
         assert!(errors.contains(message), "{errors}");

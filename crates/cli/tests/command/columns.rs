@@ -1,6 +1,6 @@
 //! Records of other programs: `--columns`, `import csv`, and tables of results.
 
-use crate::folder::{Folder, example};
+use crate::folder::{Folder, assert_says, example};
 
 const MAP: &str = "[file]\ndelimiter = \"semicolon\"\ndecimal = \"comma\"\n[time]\ncolumn = \"Zeit\"\n\
                    unit = \"min\"\n[accel]\ncolumns = [\"aX\", \"aY\", \"aZ\"]\nunit = \"mg\"\n";
@@ -32,29 +32,9 @@ fn cells(text: &str) -> Vec<Vec<String>> {
 #[test]
 fn a_mapped_record_has_the_coefficients_of_the_record() {
     let folder = folder();
-    folder.succeed(&[
-        "calibrate",
-        "l.csv",
-        "--bench",
-        "b.toml",
-        "--columns",
-        "map.toml",
-        "--no-noise",
-        "--json",
-        "mapped.json",
-        "--coefficients",
-        "mapped.csv",
-    ]);
+    folder.succeed("calibrate l.csv --bench b.toml --columns map.toml --no-noise --json mapped.json --coefficients mapped.csv");
     folder.put_example("three_days.csv");
-    folder.succeed(&[
-        "calibrate",
-        "three_days.csv",
-        "--bench",
-        "b.toml",
-        "--no-noise",
-        "--coefficients",
-        "plain.csv",
-    ]);
+    folder.succeed("calibrate three_days.csv --bench b.toml --no-noise --coefficients plain.csv");
     let [mapped, plain] = ["mapped.csv", "plain.csv"].map(|name| cells(&folder.text(name)));
     assert_eq!((mapped.len(), mapped[0].len()), (9, 5));
     for (mapped, plain) in mapped.iter().zip(&plain) {
@@ -63,7 +43,7 @@ fn a_mapped_record_has_the_coefficients_of_the_record() {
         // Units were converted there and back: the last bits of samples differ, with noise of 1e-5 g.
         assert!((a - b).abs() < 1e-6 * sigma, "{mapped:?} {plain:?}");
     }
-    let json: serde_json::Value = serde_json::from_str(&folder.text("mapped.json")).unwrap();
+    let json: serde_json::Value = folder.json("mapped.json");
     assert_eq!(json["manifest"]["inputs"][2]["path"], "map.toml");
 }
 
@@ -74,18 +54,10 @@ fn a_pipe_is_read_once_and_whole() {
     folder.put_example("three_days.csv");
     folder.put("b.toml", example("three_days.bench.toml"));
     let of = |record: &str, table: &str| {
-        let ends = [
-            "--bench",
-            "b.toml",
-            "--json",
-            "r.json",
-            "--coefficients",
-            table,
-        ];
-        let all = [&["calibrate", record][..], &ends].concat();
-        let output = folder.run_with_stdin(&all, "three_days.csv");
+        let all = format!("calibrate {record} --bench b.toml --json r.json --coefficients {table}");
+        let output = folder.run_with_stdin(all, "three_days.csv");
         assert!(output.status.success(), "{output:?}");
-        let json: serde_json::Value = serde_json::from_str(&folder.text("r.json")).unwrap();
+        let json: serde_json::Value = folder.json("r.json");
         let hash = json["manifest"]["inputs"][0]["sha256"].clone();
         (folder.text(table), hash)
     };
@@ -98,7 +70,7 @@ fn a_pipe_is_read_once_and_whole() {
 #[test]
 fn a_record_without_its_map_is_refused_with_one() {
     let folder = folder();
-    let errors = folder.fail(&["diagnose", "l.csv", "--bench", "b.toml"]);
+    let errors = folder.fail("diagnose l.csv --bench b.toml");
     let command = "gyrocal import csv l.csv --propose MAP.toml";
     let told = errors
         .split_whitespace()
@@ -110,12 +82,9 @@ fn a_record_without_its_map_is_refused_with_one() {
         "{errors}"
     );
     // Followed to the letter.
-    let words: Vec<&str> = command.split(' ').skip(1).collect();
-    let proposed = folder.succeed(&words);
-    assert!(
-        proposed.contains("MAP PROPOSED") && proposed.contains("4321 rows"),
-        "{proposed}"
-    );
+    let proposed = folder.succeed(command.trim_start_matches("gyrocal "));
+    assert_says(&proposed, "MAP PROPOSED");
+    assert_says(&proposed, "4321 rows");
     for line in ["unit = \"mg\"", "unit = \"min\"", "decimal = \"comma\""] {
         assert!(
             folder.text("MAP.toml").contains(line),
@@ -123,51 +92,26 @@ fn a_record_without_its_map_is_refused_with_one() {
             folder.text("MAP.toml")
         );
     }
-    folder.succeed(&[
-        "calibrate",
-        "l.csv",
-        "--bench",
-        "b.toml",
-        "--columns",
-        "MAP.toml",
-        "--no-noise",
-    ]);
+    folder.succeed("calibrate l.csv --bench b.toml --columns MAP.toml --no-noise");
     folder.put("map.toml", MAP.replace("decimal = \"comma\"\n", ""));
-    let arguments = [
-        "diagnose",
-        "l.csv",
-        "--bench",
-        "b.toml",
-        "--columns",
-        "map.toml",
-    ];
-    let errors = folder.fail(&arguments);
-    assert!(errors.contains("`decimal = \"comma\"`"), "{errors}");
+    let arguments = "diagnose l.csv --bench b.toml --columns map.toml";
+    let errors = folder.fail(arguments);
+    assert_says(&errors, "`decimal = \"comma\"`");
     folder.put("map.toml", MAP.replace("aZ", "az"));
-    let errors = folder.fail(&arguments);
-    assert!(
-        errors.contains("a column `az`") && errors.contains("Zeit, aX, aY, aZ"),
-        "{errors}"
-    );
+    let errors = folder.fail(arguments);
+    assert_says(&errors, "a column `az`");
+    assert_says(&errors, "Zeit, aX, aY, aZ");
 }
 
 #[test]
 fn an_imported_record_is_read_by_every_command() {
     let folder = folder();
-    let arguments = [
-        "import",
-        "csv",
-        "l.csv",
-        "--columns",
-        "map.toml",
-        "--out",
-        "r.csv",
-    ];
-    let text = folder.succeed(&arguments);
-    assert!(text.contains("4321 rows"), "{text}");
-    folder.succeed(&["calibrate", "r.csv", "--bench", "b.toml", "--no-noise"]);
-    let errors = folder.fail(&[&arguments[..], &["--average", "60"]].concat());
-    assert!(errors.contains("calibrate --average"), "{errors}");
+    let import = "import csv l.csv --columns map.toml --out r.csv";
+    let text = folder.succeed(import);
+    assert_says(&text, "4321 rows");
+    folder.succeed("calibrate r.csv --bench b.toml --no-noise");
+    let errors = folder.fail(format!("{import} --average 60"));
+    assert_says(&errors, "calibrate --average");
 }
 
 #[test]
@@ -190,29 +134,22 @@ fn a_clock_that_begins_again_is_split_to_the_letter() {
     folder.put("FREE.toml", &bench);
     folder.forget_attitude("FREE.toml");
     for command in ["diagnose", "calibrate"] {
-        let said = folder.run(&[command, "logged.csv", "--bench", "BENCH.toml"]);
+        let said = folder.run([command, "logged.csv", "--bench", "BENCH.toml"]);
         let said = [said.stdout, said.stderr]
             .map(|text| String::from_utf8(text).unwrap())
             .concat();
         let said = said.split_whitespace().collect::<Vec<_>>().join(" ");
-        assert!(said.contains("logged.csv:2002"), "{said}");
-        assert!(
-            said.contains("gyrocal import csv logged.csv --split --out PART.csv"),
-            "{said}"
+        assert_says(&said, "logged.csv:2002");
+        assert_says(
+            &said,
+            "gyrocal import csv logged.csv --split --out PART.csv",
         );
     }
-    let answer = folder.succeed(&[
-        "import",
-        "csv",
-        "logged.csv",
-        "--split",
-        "--out",
-        "PART.csv",
-    ]);
+    let answer = folder.succeed("import csv logged.csv --split --out PART.csv");
     let answer = answer.split_whitespace().collect::<Vec<_>>().join(" ");
     let next = "calibrate PART.1.csv PART.2.csv --bench BENCH.toml --bench FREE.toml";
     assert!(answer.contains(next), "{answer}");
-    folder.succeed(&next.split(' ').collect::<Vec<_>>());
+    folder.succeed(next);
     assert_eq!(folder.text("PART.2.csv").lines().count(), 2322);
 }
 
@@ -221,16 +158,7 @@ fn findings_are_a_table_of_their_parameters() {
     let folder = Folder::new();
     folder.put_example("hidden_fault.csv");
     folder.put_example("hidden_fault.bench.toml");
-    folder.succeed(&[
-        "diagnose",
-        "hidden_fault.csv",
-        "--bench",
-        "hidden_fault.bench.toml",
-        "--findings",
-        "f.csv",
-        "--coefficients",
-        "c.csv",
-    ]);
+    folder.succeed("diagnose hidden_fault.csv --bench hidden_fault.bench.toml --findings f.csv --coefficients c.csv");
     let findings = cells(&folder.text("f.csv"));
     assert_eq!(findings[0][0], "gyro_y.g_z");
     let coefficients = cells(&folder.text("c.csv"));

@@ -5,7 +5,7 @@ use gyrocal_record::{KnownEffect, ModelFile, Standing};
 use gyrocal_truth::units::strapdown::UnitRun;
 use serde_json::{Value, json};
 
-use crate::folder::Folder;
+use crate::folder::{Folder, assert_says};
 
 const MODEL: [&str; 4] = ["extend", "d.json", "--out", "extended.model.toml"];
 
@@ -63,12 +63,7 @@ fn diagnosis(verdict: &str, findings: &[Value]) -> String {
 fn refused(text: &str) -> String {
     let folder = Folder::new();
     folder.put("d.json", text);
-    folder.fail(&MODEL)
-}
-
-#[track_caller]
-fn assert_says(said: &str, message: &str) {
-    assert!(said.contains(message), "{message}\nis not in\n{said}");
+    folder.fail(MODEL)
 }
 
 #[test]
@@ -101,7 +96,7 @@ fn terms_that_were_found_are_in_the_model_and_the_rest_is_explained() {
     assert_says(&said, "gyro_y.g_z starts at 5.000e-2 ± 1.0e-4");
     assert_says(&said, "left out     accel_x.noise is noise and not a term");
     assert_says(&said, "left out     platform.knock concerns the attitude");
-    let report: Value = serde_json::from_str(&folder.text("o.json")).unwrap();
+    let report: Value = folder.json("o.json");
     assert_eq!(report["effects"], json!(["gyro_y.g_z", "gyro_x.warmup"]));
     assert_eq!(report["left_out"][1]["effect"], "platform.knock");
     assert_eq!(report["manifest"]["inputs"][0]["path"], "d.json");
@@ -122,13 +117,13 @@ fn a_member_of_a_set_takes_the_place_of_the_effect_that_is_named() {
             .chain(["--member", member])
             .collect::<Vec<_>>()
     };
-    folder.succeed(&with("gyro_y.ramp"));
+    folder.succeed(with("gyro_y.ramp"));
     let text = folder.text("extended.model.toml");
     assert_says(&text, "effects = [\"gyro_y.ramp\", \"gyro_x.g_y\"]\n");
     // The diagnosis estimates the named effect only.
     assert!(!text.contains("\"gyro_y.ramp\" = {"), "{text}");
     assert_says(&text, "\"gyro_x.g_y\" = { value = 0.1, sigma = 0.0001 }");
-    let said = folder.fail(&with("gyro_y.step"));
+    let said = folder.fail(with("gyro_y.step"));
     assert_says(&said, "found no alternative `gyro_y.step`");
     assert_says(&said, "expected `gyro_y.ramp`");
 }
@@ -136,13 +131,7 @@ fn a_member_of_a_set_takes_the_place_of_the_effect_that_is_named() {
 #[test]
 fn a_list_of_effects_is_a_model_without_estimates() {
     let folder = Folder::new();
-    let said = folder.succeed(&[
-        "extend",
-        "--effects",
-        "gyro_z.step,gyro_x.g_yy",
-        "--out",
-        "m.model.toml",
-    ]);
+    let said = folder.succeed("extend --effects gyro_z.step,gyro_x.g_yy --out m.model.toml");
     assert_says(
         &folder.text("m.model.toml"),
         "effects = [\"gyro_z.step\", \"gyro_x.g_yy\"]\n",
@@ -217,7 +206,7 @@ fn lists_that_no_model_can_have_are_refused() {
     ];
     for (effects, message) in cases {
         let folder = Folder::new();
-        let said = folder.fail(&["extend", "--effects", effects, "--out", "m.toml"]);
+        let said = folder.fail(["extend", "--effects", effects, "--out", "m.toml"]);
         assert_says(&said, message);
     }
 }
@@ -230,7 +219,7 @@ fn a_file_name_that_is_no_module_name_is_refused() {
         ("Extended.model.toml", "`Extended`"),
     ] {
         let folder = Folder::new();
-        let said = folder.fail(&["extend", "--effects", "gyro_y.g_z", "--out", file]);
+        let said = folder.fail(["extend", "--effects", "gyro_y.g_z", "--out", file]);
         assert_says(&said, &format!("{file}: not written"));
         assert_says(&said, &format!("found the module name {found}"));
         assert_says(&said, "such as `extended.model.toml`");
@@ -242,16 +231,9 @@ fn a_diagnosis_or_a_list_is_asked_for() {
     let folder = Folder::new();
     folder.put("d.json", "{}");
     for arguments in [
-        &["extend", "--out", "m.toml"][..],
-        &[
-            "extend",
-            "d.json",
-            "--effects",
-            "gyro_y.g_z",
-            "--out",
-            "m.toml",
-        ],
-        &["extend", "d.json", "--out", "./d.json"],
+        "extend --out m.toml",
+        "extend d.json --effects gyro_y.g_z --out m.toml",
+        "extend d.json --out ./d.json",
     ] {
         assert_eq!(
             folder.run(arguments).status.code(),
@@ -286,25 +268,9 @@ fn a_fault_of_a_strapdown_unit_goes_from_its_record_to_the_model_file() {
     }
     .simulate();
     unit.write(&folder.path("")).unwrap();
-    let diagnosed = [
-        "diagnose",
-        "record.csv",
-        "--bench",
-        "bench.toml",
-        "--gyro-axes",
-        "axes.csv",
-        "--json",
-        "d.json",
-    ];
-    folder.succeed(&diagnosed);
-    let said = folder.succeed(&[
-        "extend",
-        "d.json",
-        "--out",
-        "unit.model.toml",
-        "--json",
-        "o.json",
-    ]);
+    let diagnosed = "diagnose record.csv --bench bench.toml --gyro-axes axes.csv --json d.json";
+    folder.succeed(diagnosed);
+    let said = folder.succeed("extend d.json --out unit.model.toml --json o.json");
     assert_says(&said, "gyros        fixed to a body");
     let text = folder.text("unit.model.toml");
     assert_says(
@@ -320,7 +286,7 @@ fn a_fault_of_a_strapdown_unit_goes_from_its_record_to_the_model_file() {
         (estimate.value - RAMP).abs() < 4.0 * estimate.sigma,
         "{text}"
     );
-    let report: Value = serde_json::from_str(&folder.text("o.json")).unwrap();
+    let report: Value = folder.json("o.json");
     assert_eq!(report["strapdown"], json!(true));
     assert_eq!(report["effects"], json!(["gyro_y.ramp"]));
 }
@@ -338,19 +304,13 @@ fn known() -> Vec<KnownEffect<'static>> {
 #[test]
 fn a_list_of_effects_says_what_the_gyros_are_fixed_to() {
     let folder = Folder::new();
-    let listed = [
-        "extend",
-        "--effects",
-        "gyro_y.ramp",
-        "--out",
-        "m.model.toml",
-    ];
-    folder.succeed(&[&listed[..], &["--gyros", "strapdown"]].concat());
+    let listed = "extend --effects gyro_y.ramp --out m.model.toml";
+    folder.succeed(format!("{listed} --gyros strapdown"));
     assert_says(&folder.text("m.model.toml"), "gyros = \"strapdown\"\n");
-    folder.succeed(&[&listed[..], &["--gyros", "platform"]].concat());
+    folder.succeed(format!("{listed} --gyros platform"));
     assert!(!folder.text("m.model.toml").contains("gyros"));
     // A diagnosis says it itself.
-    let output = folder.run(&[&MODEL[..], &["--gyros", "strapdown"]].concat());
+    let output = folder.run([&MODEL[..], &["--gyros", "strapdown"]].concat());
     assert_eq!(output.status.code(), Some(2));
 }
 
@@ -365,7 +325,7 @@ fn advice_on_a_strapdown_unit_is_for_such_a_unit() {
     let mut result: Value = serde_json::from_str(&result).unwrap();
     result["subject"] = json!("strapdown");
     folder.put("d.json", result.to_string());
-    let said = folder.succeed(&MODEL);
+    let said = folder.succeed(MODEL);
     assert_says(
         &folder.text("extended.model.toml"),
         "gyros = \"strapdown\"\n",

@@ -1,7 +1,7 @@
 //! The first screen of every command, on a terminal of 80 columns and 24 lines: it fits, with the
 //! prompt, and its first three lines hold the verdict.
 
-use crate::folder::{Folder, example, repository, repository_argument};
+use crate::folder::{CommandLine, Folder, assert_says, example, repository, repository_argument};
 
 const COLUMNS: usize = 80;
 
@@ -10,12 +10,12 @@ const LINES: usize = 22;
 
 /// The screen of a command, which fits and has these words in its first three lines.
 #[track_caller]
-fn assert_screen(folder: &Folder, arguments: &[&str], verdict: &[&str]) -> String {
-    let output = folder.run_on_a_terminal(arguments);
+fn assert_screen(folder: &Folder, arguments: impl CommandLine, verdict: &[&str]) -> String {
+    let output = folder.run_on_a_terminal(&arguments);
     let said = String::from_utf8(output.stdout).unwrap();
     let errors = String::from_utf8(output.stderr).unwrap();
     // Without a command there is no result.
-    let expected = if arguments.is_empty() { 2 } else { 0 };
+    let expected = if arguments.words().is_empty() { 2 } else { 0 };
     assert_eq!(output.status.code(), Some(expected), "{errors}");
     assert!(said.lines().count() <= LINES, "{said}");
     for line in said.lines() {
@@ -85,7 +85,7 @@ fn a_fault_is_told_with_size_significance_alternatives_and_next_step() {
     arguments.extend(["--with", "gyro_y.g_z"]);
     assert_screen(&folder, &arguments, &["FAULT", "gyro_y.g_z, 17.6 sigma"]);
     let arguments = ["extend", "d.json", "--out", "x.model.toml"];
-    assert_screen(&folder, &arguments, &["MODEL FILE  x.model.toml"]);
+    assert_screen(&folder, arguments, &["MODEL FILE  x.model.toml"]);
 }
 
 #[test]
@@ -96,10 +96,7 @@ fn a_sound_record_is_told_as_such() {
     assert_screen(&folder, &clean, &["NO FAULT FOUND", "58 effects tested"]);
     let calibrated = [&["calibrate"], &files[..]].concat();
     let said = assert_screen(&folder, &calibrated, &["CALIBRATED", "mean NIS 3.021"]);
-    assert!(
-        said.contains(" gyro_x.bias   0.41164 ± 0.00022 deg/h "),
-        "{said}"
-    );
+    assert_says(&said, " gyro_x.bias   0.41164 ± 0.00022 deg/h ");
 }
 
 #[test]
@@ -126,27 +123,12 @@ fn simulations_fit() {
     let folder = Folder::new();
     let scenario = repository_argument("examples/data/three_days.scenario.toml");
     folder.put("s.toml", std::fs::read(scenario).unwrap());
-    let arguments = [
-        "simulate",
-        "s.toml",
-        "--out",
-        "r.csv",
-        "--bench-out",
-        "b.toml",
-    ];
-    assert_screen(&folder, &arguments, &["SIMULATED  r.csv: 4321 rows"]);
+    let arguments = "simulate s.toml --out r.csv --bench-out b.toml";
+    assert_screen(&folder, arguments, &["SIMULATED  r.csv: 4321 rows"]);
     let arguments = ["monte-carlo", "s.toml", "--seeds", "0..4"];
-    assert_screen(&folder, &arguments, &["CONSISTENT  4 runs, 0 failed"]);
-    let arguments = [
-        "characterise",
-        "--cell",
-        "d8",
-        "--runs",
-        "1",
-        "--method",
-        "none",
-    ];
-    assert_screen(&folder, &arguments, &["figures hold"]);
+    assert_screen(&folder, arguments, &["CONSISTENT  4 runs, 0 failed"]);
+    let arguments = "characterise --cell d8 --runs 1 --method none";
+    assert_screen(&folder, arguments, &["figures hold"]);
 }
 
 #[test]
@@ -166,53 +148,39 @@ fn tests_of_instruments_fit() {
         "TERMS MISSING  the nominal drift law lacks 6 terms",
         "gyro_x.g_z    280 ± 18 deg/h/g, p = 0.001",
     ];
-    assert_screen(&folder, &tumble, &verdict);
+    assert_screen(&folder, tumble, &verdict);
     let allan = ["allan", "r.csv", "--log-description", "r.toml"];
     assert_screen(
         &folder,
-        &allan,
+        allan,
         &["NOISE NOT EXPLAINED", "in 3 of 3 columns"],
     );
-    let import = [
-        "import",
-        "strapdown",
-        "r.csv",
-        "--log-description",
-        "r.toml",
-        "--out",
-        "p.csv",
-        "--bench-out",
-        "p.toml",
-    ];
+    let import = "import strapdown r.csv --log-description r.toml --out p.csv --bench-out p.toml";
     let verdict = [
         "IMPORTED  61 rows",
         "horizontal rate  12.4247 ± 0.0025 deg/h",
     ];
-    assert_screen(&folder, &import, &verdict);
+    assert_screen(&folder, import, &verdict);
 }
 
 #[test]
 fn the_catalogue_and_the_greeting_fit() {
     let folder = Folder::new();
-    assert_screen(&folder, &[], &["What people do first"]);
-    assert_screen(&folder, &["effects"], &["EFFECTS  114 of the catalogue"]);
+    assert_screen(&folder, "", &["What people do first"]);
+    assert_screen(&folder, ["effects"], &["EFFECTS  114 of the catalogue"]);
     for effect in gyrocal::EFFECTS.iter() {
-        let said = assert_screen(&folder, &["effects", effect.id], &[effect.id]);
+        let said = assert_screen(&folder, ["effects", effect.id], &[effect.id]);
         assert!(
             said.contains("typical size") || effect.parameters.is_empty(),
             "{said}"
         );
     }
     let family = ["effects", "gyro_i.g_j"];
-    assert_screen(&folder, &family, &["family", "gyro_x.g_y, gyro_x.g_z"]);
-    let errors = folder.fail(&["effects", "gyro_y.gz"]);
-    assert!(errors.contains("the nearest are `gyro_y.g_z`"), "{errors}");
-    assert_screen(&folder, &["man", "pages"], &["WROTE"]);
-    assert!(
-        folder
-            .text("pages/gyrocal-diagnose.1")
-            .contains("Examples:")
-    );
+    assert_screen(&folder, family, &["family", "gyro_x.g_y, gyro_x.g_z"]);
+    let errors = folder.fail("effects gyro_y.gz");
+    assert_says(&errors, "the nearest are `gyro_y.g_z`");
+    assert_screen(&folder, ["man", "pages"], &["WROTE"]);
+    assert_says(&folder.text("pages/gyrocal-diagnose.1"), "Examples:");
 }
 
 #[test]
@@ -228,7 +196,7 @@ fn details_fit_the_width_and_a_pipe_has_whole_lines() {
             assert!(line.chars().count() <= COLUMNS, "{command}: {line}");
         }
     }
-    let said = folder.succeed_as_is(&[&["diagnose"], &files[..]].concat());
+    let said = folder.succeed_as_is([&["diagnose"], &files[..]].concat());
     let fault = said
         .lines()
         .find(|line| line.starts_with("what it does"))
@@ -247,11 +215,11 @@ fn nothing_is_printed_if_asked_so_and_colours_on_request_only() {
     assert!(output.stdout.is_empty() && output.stderr.is_empty());
     let colour = |when: &str| {
         let color = format!("--color={when}");
-        let said = folder.succeed_as_is(&["effects", "gyro_y.g_z", &color]);
+        let said = folder.succeed_as_is(["effects", "gyro_y.g_z", &color]);
         said.contains('\u{1b}')
     };
     assert!(colour("always") && !colour("never") && !colour("auto"));
-    let wrong = folder.run(&["diagnose", "--colour", "--color=always"]);
+    let wrong = folder.run("diagnose --colour --color=always");
     assert!(String::from_utf8(wrong.stderr).unwrap().contains('\u{1b}'));
 }
 
@@ -266,8 +234,8 @@ fn a_record_that_can_show_little_is_too_short_to_tell() {
         .collect();
     folder.put("short.csv", rows.join("\n") + "\n");
     let arguments = ["diagnose", "short.csv", "--bench", "three_days.bench.toml"];
-    let said = assert_screen(&folder, &arguments, &["TOO SHORT TO TELL"]);
-    assert!(said.contains("record for a day or longer"), "{said}");
+    let said = assert_screen(&folder, arguments, &["TOO SHORT TO TELL"]);
+    assert_says(&said, "record for a day or longer");
     assert!(!said.contains("NO FAULT FOUND"), "{said}");
 }
 
@@ -278,18 +246,11 @@ fn a_random_walk_is_told_with_its_interval_and_without_a_simulation() {
     let scenario = example("three_days.scenario.toml");
     folder.simulate(&format!("{scenario}\n{hidden}"));
     let arguments = ["diagnose", "r.csv", "--bench", "b.toml"];
-    let said = assert_screen(&folder, &arguments, &["gyro_x.random_walk", "(95 %: "]);
+    let said = assert_screen(&folder, arguments, &["gyro_x.random_walk", "(95 %: "]);
     assert!(!said.contains("open-loop"), "{said}");
     // A filter cannot have it: the next step is not to extend one.
-    let arguments = [
-        "calibrate",
-        "r.csv",
-        "--bench",
-        "b.toml",
-        "--with",
-        "gyro_x.random_walk",
-    ];
-    let said = assert_screen(&folder, &arguments, &["FAULT"]);
+    let arguments = "calibrate r.csv --bench b.toml --with gyro_x.random_walk";
+    let said = assert_screen(&folder, arguments, &["FAULT"]);
     assert!(
         said.contains("next") && !said.contains("gyrocal extend"),
         "{said}"
@@ -316,7 +277,7 @@ fn what_to_do_about_a_wrong_set_up_goes_by_what_stops() {
         .replace("latitude_deg = ", "latitude_deg = -");
     folder.put("south.toml", bench);
     let arguments = ["diagnose", "zeros.csv", "--bench", "south.toml"];
-    let said = assert_screen(&folder, &arguments, &["SET-UP WRONG"]);
-    assert!(said.contains("mend the record or its bench file"), "{said}");
-    assert!(said.contains("can be mended"), "{said}");
+    let said = assert_screen(&folder, arguments, &["SET-UP WRONG"]);
+    assert_says(&said, "mend the record or its bench file");
+    assert_says(&said, "can be mended");
 }

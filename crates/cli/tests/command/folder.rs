@@ -6,9 +6,51 @@ use std::process::Output;
 
 use assert_cmd::Command;
 use gyrocal_truth::Scenario;
+use serde::de::DeserializeOwned;
 use tempfile::TempDir;
 
 use crate::contract::assert_conforms;
+
+/// Arguments of the command: a text with spaces between them, or one by one.
+pub(crate) trait CommandLine {
+    fn words(&self) -> Vec<&str>;
+}
+
+impl CommandLine for str {
+    fn words(&self) -> Vec<&str> {
+        self.split_whitespace().collect()
+    }
+}
+
+impl CommandLine for String {
+    fn words(&self) -> Vec<&str> {
+        self.as_str().words()
+    }
+}
+
+impl CommandLine for [&str] {
+    fn words(&self) -> Vec<&str> {
+        self.to_vec()
+    }
+}
+
+impl<const COUNT: usize> CommandLine for [&str; COUNT] {
+    fn words(&self) -> Vec<&str> {
+        self.to_vec()
+    }
+}
+
+impl CommandLine for Vec<&str> {
+    fn words(&self) -> Vec<&str> {
+        self.clone()
+    }
+}
+
+impl<T: CommandLine + ?Sized> CommandLine for &T {
+    fn words(&self) -> Vec<&str> {
+        (**self).words()
+    }
+}
 
 /// Temporary folder of one test, in which the command runs.
 pub(crate) struct Folder {
@@ -57,14 +99,7 @@ impl Folder {
     /// Simulates a scenario: `r.csv` and `b.toml`.
     pub(crate) fn simulate(&self, scenario: &str) {
         self.put("s.toml", scenario);
-        self.succeed(&[
-            "simulate",
-            "s.toml",
-            "--out",
-            "r.csv",
-            "--bench-out",
-            "b.toml",
-        ]);
+        self.succeed("simulate s.toml --out r.csv --bench-out b.toml");
     }
 
     /// Simulates a record `NAME.csv` with its bench file `NAME.bench.toml`.
@@ -76,6 +111,11 @@ impl Folder {
         made.bench
             .write(&self.path(&format!("{name}.bench.toml")))
             .unwrap();
+    }
+
+    /// A written result.
+    pub(crate) fn json<T: DeserializeOwned>(&self, name: &str) -> T {
+        serde_json::from_str(&self.text(name)).unwrap()
     }
 
     pub(crate) fn text(&self, name: &str) -> String {
@@ -92,61 +132,54 @@ impl Folder {
         names
     }
 
-    pub(crate) fn run(&self, arguments: &[&str]) -> Output {
-        Command::cargo_bin("gyrocal")
-            .unwrap()
+    fn command(&self, arguments: impl CommandLine) -> Command {
+        let mut command = Command::cargo_bin("gyrocal").unwrap();
+        command
             .current_dir(self.folder.path())
-            .args(arguments)
-            .output()
-            .unwrap()
+            .args(arguments.words());
+        command
+    }
+
+    pub(crate) fn run(&self, arguments: impl CommandLine) -> Output {
+        self.command(arguments).output().unwrap()
     }
 
     /// Runs a command with a file in a pipe to its standard input.
-    pub(crate) fn run_with_stdin(&self, arguments: &[&str], name: &str) -> Output {
-        Command::cargo_bin("gyrocal")
-            .unwrap()
-            .current_dir(self.folder.path())
-            .args(arguments)
-            .write_stdin(self.text(name))
-            .output()
-            .unwrap()
+    pub(crate) fn run_with_stdin(&self, arguments: impl CommandLine, name: &str) -> Output {
+        let mut command = self.command(arguments);
+        command.write_stdin(self.text(name)).output().unwrap()
     }
 
     /// Runs a command as on a terminal of 80 columns.
-    pub(crate) fn run_on_a_terminal(&self, arguments: &[&str]) -> Output {
-        Command::cargo_bin("gyrocal")
-            .unwrap()
-            .current_dir(self.folder.path())
-            .env("COLUMNS", "80")
-            .args(arguments)
-            .output()
-            .unwrap()
+    pub(crate) fn run_on_a_terminal(&self, arguments: impl CommandLine) -> Output {
+        let mut command = self.command(arguments);
+        command.env("COLUMNS", "80").output().unwrap()
     }
 
     /// Runs a command that must succeed with all details; returns stdout.
-    pub(crate) fn succeed(&self, arguments: &[&str]) -> String {
-        let mut detailed = arguments.to_vec();
+    pub(crate) fn succeed(&self, arguments: impl CommandLine) -> String {
+        let mut detailed = arguments.words();
         detailed.push("--verbose");
         self.succeed_as_is(&detailed)
     }
 
     /// Runs a command that must succeed; returns stdout. A result for programs has to conform to its schema.
-    pub(crate) fn succeed_as_is(&self, arguments: &[&str]) -> String {
-        let output = self.run(arguments);
+    pub(crate) fn succeed_as_is(&self, arguments: impl CommandLine) -> String {
+        let output = self.run(&arguments);
         let errors = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(0), "{errors}");
-        assert_conforms(self, arguments);
+        assert_conforms(self, &arguments.words());
         String::from_utf8(output.stdout).unwrap()
     }
 
     /// Runs a command that must fail with exit code 1, without output on stdout, changed files or a
     /// panic; returns stderr.
-    pub(crate) fn fail(&self, arguments: &[&str]) -> String {
+    pub(crate) fn fail(&self, arguments: impl CommandLine) -> String {
         self.fail_writing(arguments, &[])
     }
 
     /// The same of a command that writes these files.
-    pub(crate) fn fail_writing(&self, arguments: &[&str], written: &[&str]) -> String {
+    pub(crate) fn fail_writing(&self, arguments: impl CommandLine, written: &[&str]) -> String {
         let mut before = self.names();
         before.extend(written.iter().map(|name| (*name).to_owned()));
         before.sort();
@@ -161,6 +194,24 @@ impl Folder {
         assert_eq!(errors.matches('×').count(), 1, "{errors}");
         errors
     }
+}
+
+#[track_caller]
+pub(crate) fn assert_says(said: &str, words: &str) {
+    assert!(said.contains(words), "{words}\nis not in\n{said}");
+}
+
+/// The example with a hidden fault.
+pub(crate) const RECORD: &str = "hidden_fault.csv";
+pub(crate) const BENCH: &str = "hidden_fault.bench.toml";
+
+/// A folder with that record and its bench description.
+pub(crate) fn hidden_fault() -> Folder {
+    let folder = Folder::new();
+    for name in [RECORD, BENCH] {
+        folder.put_example(name);
+    }
+    folder
 }
 
 /// The repository's own files.

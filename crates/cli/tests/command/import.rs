@@ -3,7 +3,7 @@
 use gyrocal_record::{CalibrationReport, FitVerdict};
 
 use crate::calibrate::unwrapped;
-use crate::folder::{Folder, repository, repository_argument};
+use crate::folder::{Folder, assert_says, repository, repository_argument};
 
 const LOG: &str = "tests/data/measured/ring_laser_static/imu.csv";
 const DESCRIPTION: &str = "tests/data/measured/ring_laser_static/log.toml";
@@ -28,12 +28,9 @@ fn arguments<'a>(log: &'a str, description: &'a str) -> [&'a str; 11] {
 fn the_recorded_unit_feels_the_earth_turn() {
     let folder = Folder::new();
     let (log, description) = (repository_argument(LOG), repository_argument(DESCRIPTION));
-    let text = folder.succeed(&arguments(&log, &description));
-    assert!(
-        text.contains("One attitude determines three combinations"),
-        "{text}"
-    );
-    let json: serde_json::Value = serde_json::from_str(&folder.text("o.json")).unwrap();
+    let text = folder.succeed(arguments(&log, &description));
+    assert_says(&text, "One attitude determines three combinations");
+    let json: serde_json::Value = folder.json("o.json");
     let rate = |name: &str| {
         let value = |index: usize| {
             json[format!("{name}_rate_deg_per_h")][index]
@@ -78,7 +75,7 @@ fn a_rate_that_is_not_the_earths_is_called_far_off() {
         // At this latitude the horizontal rate is higher by 0.1 deg/h, forty sigmas.
         description.replace("latitude_deg = 34.246048", "latitude_deg = 33.5"),
     );
-    let text = folder.succeed(&arguments(&repository_argument(LOG), "l.toml"));
+    let text = folder.succeed(arguments(&repository_argument(LOG), "l.toml"));
     let lines: Vec<&str> = text.lines().collect();
     let horizontal = lines
         .iter()
@@ -94,17 +91,10 @@ fn a_rate_that_is_not_the_earths_is_called_far_off() {
 fn the_record_can_be_calibrated_and_determines_what_one_attitude_determines() {
     let folder = Folder::new();
     let (log, description) = (repository_argument(LOG), repository_argument(DESCRIPTION));
-    folder.succeed(&arguments(&log, &description));
-    folder.succeed(&[
-        "calibrate",
-        "r.csv",
-        "--bench",
-        "b.toml",
-        "--json",
-        "c.json",
-    ]);
-    let json: serde_json::Value = serde_json::from_str(&folder.text("c.json")).unwrap();
-    let report: serde_json::Value = serde_json::from_str(&folder.text("o.json")).unwrap();
+    folder.succeed(arguments(&log, &description));
+    folder.succeed("calibrate r.csv --bench b.toml --json c.json");
+    let json: serde_json::Value = folder.json("c.json");
+    let report: serde_json::Value = folder.json("o.json");
     let coefficients = json["coefficients"].as_array().unwrap();
     let find = |name: &str| {
         let found = coefficients
@@ -135,18 +125,9 @@ fn the_record_can_be_calibrated_and_determines_what_one_attitude_determines() {
 fn in_the_axes_of_its_gyros_one_attitude_leaves_seven_of_nine_combinations_undetermined() {
     let folder = Folder::new();
     let (log, description) = (repository_argument(LOG), repository_argument(DESCRIPTION));
-    folder.succeed(&[&arguments(&log, &description)[..], &["--axes-out", "a.csv"]].concat());
-    folder.succeed(&[
-        "calibrate",
-        "r.csv",
-        "--bench",
-        "b.toml",
-        "--gyro-axes",
-        "a.csv",
-        "--json",
-        "c.json",
-    ]);
-    let json: serde_json::Value = serde_json::from_str(&folder.text("c.json")).unwrap();
+    folder.succeed([&arguments(&log, &description)[..], &["--axes-out", "a.csv"]].concat());
+    folder.succeed("calibrate r.csv --bench b.toml --gyro-axes a.csv --json c.json");
+    let json: serde_json::Value = folder.json("c.json");
     let coefficients = json["coefficients"].as_array().unwrap();
     let determined: Vec<&str> = coefficients
         .iter()
@@ -155,19 +136,12 @@ fn in_the_axes_of_its_gyros_one_attitude_leaves_seven_of_nine_combinations_undet
         .collect();
     // Body x points south. Up is gyro z's bias, g_z and g_zz together: none of them by itself.
     assert_eq!(determined, ["gyro_x.bias"]);
-    let said = folder.succeed(&[
-        "calibrate",
-        "r.csv",
-        "--bench",
-        "b.toml",
-        "--gyro-axes",
-        "a.csv",
-    ]);
+    let said = folder.succeed("calibrate r.csv --bench b.toml --gyro-axes a.csv");
     let said = unwrapped(&said);
     let combinations = said.matches(" % of that before the record");
     assert_eq!(combinations.count(), 7, "{said}");
     // An error of an output, not the drift of a platform: the north component's sign is turned.
-    let report: serde_json::Value = serde_json::from_str(&folder.text("o.json")).unwrap();
+    let report: serde_json::Value = folder.json("o.json");
     let rate = |name: &str| report[name].as_f64().unwrap();
     let north = report["horizontal_rate_deg_per_h"][0].as_f64().unwrap()
         - rate("expected_horizontal_rate_deg_per_h");
@@ -180,9 +154,9 @@ fn in_the_axes_of_its_gyros_one_attitude_leaves_seven_of_nine_combinations_undet
 fn its_diagnosis_names_no_physical_cause_and_says_what_would_pass_unseen() {
     let folder = Folder::new();
     let (log, description) = (repository_argument(LOG), repository_argument(DESCRIPTION));
-    folder.succeed(&arguments(&log, &description));
-    folder.succeed(&["diagnose", "r.csv", "--bench", "b.toml", "--json", "d.json"]);
-    let json: serde_json::Value = serde_json::from_str(&folder.text("d.json")).unwrap();
+    folder.succeed(arguments(&log, &description));
+    folder.succeed("diagnose r.csv --bench b.toml --json d.json");
+    let json: serde_json::Value = folder.json("d.json");
     for finding in json["findings"].as_array().unwrap() {
         // The vehicle rocks: its noise is not quite what was declared. Half an hour in one
         // attitude can tell no drift term from another, and a uniform turn is no converter's step.
@@ -207,12 +181,12 @@ fn its_diagnosis_names_no_physical_cause_and_says_what_would_pass_unseen() {
 fn it_is_diagnosed_in_the_axes_of_its_gyros() {
     let folder = Folder::new();
     let (log, description) = (repository_argument(LOG), repository_argument(DESCRIPTION));
-    folder.succeed(&[&arguments(&log, &description)[..], &["--axes-out", "a.csv"]].concat());
+    folder.succeed([&arguments(&log, &description)[..], &["--axes-out", "a.csv"]].concat());
     let diagnose = ["diagnose", "r.csv", "--bench", "b.toml"];
     let with = |more: &[&'static str]| [&diagnose[..], more].concat();
-    let said = folder.succeed(&with(&["--gyro-axes", "a.csv", "--json", "d.json"]));
-    assert!(said.contains("fixed to a body"), "{said}");
-    let json: serde_json::Value = serde_json::from_str(&folder.text("d.json")).unwrap();
+    let said = folder.succeed(with(&["--gyro-axes", "a.csv", "--json", "d.json"]));
+    assert_says(&said, "fixed to a body");
+    let json: serde_json::Value = folder.json("d.json");
     assert_eq!(json["subject"], "strapdown");
     for finding in json["findings"].as_array().unwrap() {
         // As without the axes: the vehicle rocks.
@@ -222,7 +196,7 @@ fn it_is_diagnosed_in_the_axes_of_its_gyros() {
             "{effect}"
         );
     }
-    let short = folder.run(&with(&["--gyro-axes", "a.csv"]));
+    let short = folder.run(with(&["--gyro-axes", "a.csv"]));
     let short = String::from_utf8(short.stdout).unwrap();
     let short = short.replace("\\\n", " ");
     let next: Vec<&str> = short.split("next").skip(1).collect();
@@ -277,7 +251,7 @@ fn a_heading_that_is_none_is_refused_as_an_option() {
     ];
     for (heading, sigma, message) in cases {
         let options = ["--heading-deg", heading, "--heading-sigma-deg", sigma];
-        let output = folder.run(&[&arguments(&log, &description), &options[..]].concat());
+        let output = folder.run([&arguments(&log, &description), &options[..]].concat());
         assert_eq!(output.status.code(), Some(2));
         let errors = String::from_utf8(output.stderr).unwrap();
         assert!(errors.contains(message), "{message}\nis not in\n{errors}");
@@ -288,20 +262,11 @@ fn a_heading_that_is_none_is_refused_as_an_option() {
 fn a_computed_platform_is_checked_as_far_as_it_is_one() {
     let folder = Folder::new();
     let (log, description) = (repository_argument(LOG), repository_argument(DESCRIPTION));
-    folder.succeed(&[&arguments(&log, &description)[..], &["--axes-out", "a.csv"]].concat());
+    folder.succeed([&arguments(&log, &description)[..], &["--axes-out", "a.csv"]].concat());
     let sound = folder.text("r.csv");
-    let calibrate = [
-        "calibrate",
-        "r.csv",
-        "--bench",
-        "b.toml",
-        "--gyro-axes",
-        "a.csv",
-        "--json",
-        "c.json",
-    ];
-    folder.succeed(&calibrate);
-    let report: CalibrationReport = serde_json::from_str(&folder.text("c.json")).unwrap();
+    let calibrate = "calibrate r.csv --bench b.toml --gyro-axes a.csv --json c.json";
+    folder.succeed(calibrate);
+    let report: CalibrationReport = folder.json("c.json");
     assert!(report.setup.is_empty());
     assert_eq!(report.effects.len(), 1);
     assert!(report.effects[0].causes.is_empty(), "{:?}", report.effects);
@@ -318,8 +283,8 @@ fn a_computed_platform_is_checked_as_far_as_it_is_one() {
         folder.put("r.csv", text + "\n");
     };
     let wrong = |kind: &str| {
-        let errors = folder.fail_writing(&calibrate, &["c.json"]);
-        let report: CalibrationReport = serde_json::from_str(&folder.text("c.json")).unwrap();
+        let errors = folder.fail_writing(calibrate, &["c.json"]);
+        let report: CalibrationReport = folder.json("c.json");
         assert_eq!(report.verdict, FitVerdict::Setup, "{errors}");
         assert_eq!(report.setup[0].kind, kind, "{errors}");
     };
@@ -333,7 +298,7 @@ fn a_computed_platform_is_checked_as_far_as_it_is_one() {
 fn axes_that_belong_to_another_record_are_refused() {
     let folder = Folder::new();
     let (log, description) = (repository_argument(LOG), repository_argument(DESCRIPTION));
-    folder.succeed(&[&arguments(&log, &description)[..], &["--axes-out", "a.csv"]].concat());
+    folder.succeed([&arguments(&log, &description)[..], &["--axes-out", "a.csv"]].concat());
     let axes = folder.text("a.csv");
     let calibrate = [
         "calibrate",
@@ -347,11 +312,11 @@ fn axes_that_belong_to_another_record_are_refused() {
         "x.csv",
         axes.lines().take(20).collect::<Vec<_>>().join("\n"),
     );
-    let errors = folder.fail(&calibrate);
-    assert!(errors.contains("found 19 rows, expected 61"), "{errors}");
+    let errors = folder.fail(calibrate);
+    assert_says(&errors, "found 19 rows, expected 61");
     folder.put("x.csv", axes.replacen("q_w", "w", 1));
-    let errors = folder.fail(&calibrate);
-    assert!(errors.contains("a column `q_w`"), "{errors}");
+    let errors = folder.fail(calibrate);
+    assert_says(&errors, "a column `q_w`");
     folder.put("x.csv", axes);
     let twice = [&calibrate[..], &["--gyro-axes", "x.csv"]].concat();
     assert_eq!(folder.run(&twice).status.code(), Some(2));
@@ -367,7 +332,7 @@ fn bad_input_is_told() {
         let folder = Folder::new();
         folder.put("l.csv", log);
         folder.put("l.toml", description);
-        folder.fail(&arguments("l.csv", "l.toml"))
+        folder.fail(arguments("l.csv", "l.toml"))
     };
     let with = |from: &str, to: &str| refused(&log, &description.replace(from, to));
     let gap: String = log

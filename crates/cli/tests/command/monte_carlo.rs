@@ -2,47 +2,37 @@
 
 use std::fs;
 use std::process::Stdio;
+use std::sync::LazyLock;
 use std::time::{Duration, Instant};
 
 use gyrocal_evaluation::MonteCarloReport;
 
-use crate::folder::Folder;
+use crate::folder::{Folder, assert_says};
+use crate::simulate;
 
 /// Three hours, which determine little but take no time.
-const SCENARIO: &str = "\
-seed = 77
-[site]
-latitude_deg = 39.1
-[platform]
-initial_angles_deg = [10.0, 20.0, 30.0]
-initial_angles_sigma_deg = [0.01, 0.01, 0.01]
-[gyros]
-bias_deg_per_h = [0.5, -0.5, 0.5]
-g_deg_per_h_per_g = [-0.2, 0.2, 0.2]
-gg_deg_per_h_per_g2 = [-0.1, 0.1, -0.1]
-[noise]
-accel_g = 1e-5
-gyro_deg_per_h = 0.002
-[sampling]
-duration_s = 10800
-interval_s = 60
-";
+static SCENARIO: LazyLock<String> = LazyLock::new(|| {
+    simulate::SCENARIO
+        .replace("seed = 1\n", "seed = 77\n")
+        .replace("[0.0, 0.0, 0.0]", "[10.0, 20.0, 30.0]")
+        .replace("= 3600", "= 10800")
+});
 
 fn folder() -> Folder {
     let folder = Folder::new();
-    folder.put("s.toml", SCENARIO);
+    folder.put("s.toml", &*SCENARIO);
     folder
 }
 
 /// The command over these seeds, with more arguments separated by spaces.
 fn said(folder: &Folder, seeds: &str, more: &str) -> String {
     let line = format!("monte-carlo s.toml --seeds {seeds} {more}");
-    folder.succeed(&line.split_whitespace().collect::<Vec<_>>())
+    folder.succeed(line)
 }
 
 fn refused(folder: &Folder, more: &str) -> String {
     let line = format!("monte-carlo s.toml --seeds 0..3 {more}");
-    folder.fail(&line.split_whitespace().collect::<Vec<_>>())
+    folder.fail(line)
 }
 
 /// The numbers between a name at the beginning of a line and the end of that line.
@@ -67,15 +57,13 @@ fn the_record_that_ships_is_calibrated_as_well_as_its_sigmas_say() {
         text.replace("interval_s = 60.0", "interval_s = 300.0"),
     );
     let said = said(&folder, "0..16", "--json o.json");
-    assert!(
-        said.contains("16 runs, 0 failed") && said.contains(" s.toml: seeds 0 to 15\n"),
-        "{said}"
-    );
+    assert_says(&said, "16 runs, 0 failed");
+    assert_says(&said, " s.toml: seeds 0 to 15\n");
     assert!(
         said.ends_with("o.json: the result for programs\n"),
         "{said}"
     );
-    let report: MonteCarloReport = serde_json::from_str(&folder.text("o.json")).unwrap();
+    let report: MonteCarloReport = folder.json("o.json");
     assert_eq!(report.schema_version, 1);
     assert_eq!(report.seeds, [0, 16]);
     assert_eq!(report.manifest.inputs[0].path, "s.toml");
@@ -193,10 +181,7 @@ fn a_population_differs_from_run_to_run_and_is_that_of_the_seed_of_the_file() {
         SCENARIO.replace("interval_s = 60", "interval_s = 600"),
     );
     let first = said(&folder, "0..3", "--population --results a.jsonl");
-    assert!(
-        first.contains(" s.toml: scenarios of its population 0 to 2\n"),
-        "{first}"
-    );
+    assert_says(&first, " s.toml: scenarios of its population 0 to 2\n");
     let truths: Vec<String> = folder
         .text("a.jsonl")
         .lines()
@@ -209,12 +194,12 @@ fn a_population_differs_from_run_to_run_and_is_that_of_the_seed_of_the_file() {
     assert_eq!(truths.len(), 3);
     assert!(truths[0] != truths[1] && truths[1] != truths[2]);
     let errors = refused(&folder, "--results a.jsonl");
-    assert!(errors.contains("results of another campaign"), "{errors}");
+    assert_says(&errors, "results of another campaign");
 
     let other = SCENARIO.replace("interval_s = 60", "interval_s = 600");
     folder.put("s.toml", other.replace("seed = 77", "seed = 78"));
     let errors = refused(&folder, "--population --results a.jsonl");
-    assert!(errors.contains("seed: 77"), "{errors}");
+    assert_says(&errors, "seed: 77");
     assert_ne!(said(&folder, "0..3", "--population"), first);
     // Without a population the seed of the file means nothing.
     let second = said(&folder, "0..3", "");
@@ -231,9 +216,9 @@ fn the_streaming_filter_is_another_campaign() {
         batch
     );
     let errors = refused(&folder, "--streaming --results runs.jsonl");
-    assert!(
-        errors.contains("of options `method: Batch,`, expected `method: Streaming,`"),
-        "{errors}"
+    assert_says(
+        &errors,
+        "of options `method: Batch,`, expected `method: Streaming,`",
     );
 }
 
@@ -256,63 +241,52 @@ fn files_that_are_not_of_this_campaign_are_refused_and_left_alone() {
     let kept = folder.text("runs.jsonl");
     folder.put("s.toml", SCENARIO.replace("39.1", "40.1"));
     let errors = refused(&folder, "--results runs.jsonl");
-    assert!(
-        errors.contains(
-            "runs.jsonl: found results of another campaign, of scenario `latitude_deg: 39.1,`, \
-             expected `latitude_deg: 40.1,`"
-        ),
-        "{errors}"
+    assert_says(
+        &errors,
+        "runs.jsonl: found results of another campaign, of scenario `latitude_deg: 39.1,`, \
+             expected `latitude_deg: 40.1,`",
     );
     assert_eq!(folder.text("runs.jsonl"), kept);
 
     // Another build may compute otherwise.
-    folder.put("s.toml", SCENARIO);
+    folder.put("s.toml", &*SCENARIO);
     let (before, after) = kept.split_once("[\"program\",\"").unwrap();
     let (_, after) = after.split_once('"').unwrap();
     let another = format!("{before}[\"program\",\"0123456789abcdef\"{after}");
     folder.put("runs.jsonl", &another);
     let errors = refused(&folder, "--results runs.jsonl");
-    assert!(
-        errors.contains("another campaign, of program `0123456789abcdef`"),
-        "{errors}"
-    );
+    assert_says(&errors, "another campaign, of program `0123456789abcdef`");
     assert_eq!(folder.text("runs.jsonl"), another);
 
     for foreign in ["time_s,accel_x_g\n1,2\n", "no end of line"] {
         folder.put("notes.txt", foreign);
         let errors = refused(&folder, "--results notes.txt");
-        assert!(
-            errors.contains("notes.txt: found a file that holds no results of a campaign"),
-            "{errors}"
+        assert_says(
+            &errors,
+            "notes.txt: found a file that holds no results of a campaign",
         );
         assert_eq!(folder.text("notes.txt"), foreign);
     }
 
     folder.put("runs.jsonl", kept.replace("\"nees\":", "\"nest\":"));
     let errors = refused(&folder, "--results runs.jsonl");
-    assert!(errors.contains("runs.jsonl:2: no result: "), "{errors}");
-    assert!(errors.contains("delete the line"), "{errors}");
+    assert_says(&errors, "runs.jsonl:2: no result: ");
+    assert_says(&errors, "delete the line");
 }
 
 #[test]
 fn bad_input_is_refused_before_any_work() {
     let folder = folder();
     let errors = refused(&folder, "--json nowhere/o.json");
-    assert!(
-        errors.contains("nowhere/o.json: cannot be written"),
-        "{errors}"
-    );
+    assert_says(&errors, "nowhere/o.json: cannot be written");
     let errors = refused(&folder, "--results nowhere/r.jsonl");
-    assert!(
-        errors.contains("nowhere/r.jsonl: the results cannot be kept there"),
-        "{errors}"
-    );
+    assert_says(&errors, "nowhere/r.jsonl: the results cannot be kept there");
     folder.put("s.toml", SCENARIO.replace("39.1", "93.1"));
     let errors = refused(&folder, "");
-    assert!(errors.contains("s.toml:3:16: found"), "{errors}");
+    assert_says(&errors, "s.toml:3:16: found");
     fs::remove_file(folder.path("s.toml")).unwrap();
     let errors = refused(&folder, "");
-    assert!(errors.contains("s.toml: cannot be read"), "{errors}");
+    assert_says(&errors, "s.toml: cannot be read");
 
     for (more, message) in [
         (
@@ -332,7 +306,7 @@ fn bad_input_is_refused_before_any_work() {
         ("", "--seeds"),
     ] {
         let line = format!("monte-carlo s.toml {more}");
-        let output = folder.run(&line.split_whitespace().collect::<Vec<_>>());
+        let output = folder.run(line);
         let errors = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(2), "{errors}");
         assert!(errors.contains(message), "{errors}");
@@ -349,7 +323,7 @@ fn runs_that_fail_are_counted_with_their_reason_and_kept() {
     );
     folder.put("s.toml", &poor);
     let output = said(&folder, "0..20", "--results runs.jsonl --json o.json");
-    let report: MonteCarloReport = serde_json::from_str(&folder.text("o.json")).unwrap();
+    let report: MonteCarloReport = folder.json("o.json");
     let failures = &report.summary.failures;
     assert_eq!(report.summary.runs + failures.len(), 20);
     assert!((1..20).contains(&failures.len()), "{output}");
@@ -378,8 +352,8 @@ fn runs_that_fail_are_counted_with_their_reason_and_kept() {
         SCENARIO.replace("duration_s = 10800", "duration_s = 300"),
     );
     let errors = refused(&folder, "");
-    assert!(
-        errors.contains("s.toml: no run gave a calibration; seed 0: the record could not be"),
-        "{errors}"
+    assert_says(
+        &errors,
+        "s.toml: no run gave a calibration; seed 0: the record could not be",
     );
 }

@@ -3,54 +3,26 @@
 use gyrocal_design::{Aim, AttitudeOf, PlanResult};
 
 use crate::diagnose::hidden_fault;
-use crate::folder::{Folder, repository_argument};
-
-const RECORD: &str = "hidden_fault.csv";
-const BENCH: &str = "hidden_fault.bench.toml";
-
-fn folder() -> Folder {
-    let folder = Folder::new();
-    for name in [RECORD, BENCH] {
-        folder.put_example(name);
-    }
-    folder
-}
+use crate::folder::{
+    BENCH, Folder, RECORD, assert_says, hidden_fault as folder, repository_argument,
+};
 
 #[test]
 fn a_run_is_planned_from_a_diagnosis() {
     let folder = folder();
     folder.put("d.json", hidden_fault());
-    let arguments = [
-        "plan",
-        RECORD,
-        "--bench",
-        BENCH,
-        "--diagnosis",
-        "d.json",
-        "--hours",
-        "24",
-        "--limits",
-        "y=-80..80",
-        "--sigma",
-        "gyro_x.g_x=1e-4",
-        "--json",
-        "p.json",
-    ];
+    let arguments = format!(
+        "plan {RECORD} --bench {BENCH} --diagnosis d.json --hours 24 --limits y=-80..80 --sigma gyro_x.g_x=1e-4 --json p.json"
+    );
     let said = folder.succeed(&arguments);
-    assert!(
-        said.contains("Recommended next run: 24 h from platform angles x"),
-        "{said}"
+    assert_says(&said, "Recommended next run: 24 h from platform angles x");
+    assert_says(&said, "The same duration in the present attitude");
+    assert_says(
+        &said,
+        "Shortest run that meets the goal (a sigma of gyro_x.g_x",
     );
-    assert!(
-        said.contains("The same duration in the present attitude"),
-        "{said}"
-    );
-    assert!(
-        said.contains("Shortest run that meets the goal (a sigma of gyro_x.g_x"),
-        "{said}"
-    );
-    assert!(said.contains("gyro_y.g_z size"), "{said}");
-    let report: PlanResult = serde_json::from_str(&folder.text("p.json")).unwrap();
+    assert_says(&said, "gyro_y.g_z size");
+    let report: PlanResult = folder.json("p.json");
     assert_eq!(report.aim, Aim::Sigmas);
     assert_eq!(report.proposals.len(), 3);
     assert_eq!(report.now.coefficients.len(), 9);
@@ -64,7 +36,7 @@ fn a_run_is_planned_from_a_diagnosis() {
     assert!(run.outlook.coefficients[1].sigma <= 1e-4);
     // The same again, to the last bit.
     folder.succeed(&arguments);
-    let again: PlanResult = serde_json::from_str(&folder.text("p.json")).unwrap();
+    let again: PlanResult = folder.json("p.json");
     assert_eq!(again.proposals, report.proposals);
 }
 
@@ -80,7 +52,7 @@ fn mistakes_are_told() {
         "other.csv",
         folder.text(RECORD).replacen("0.0,", "0.00,", 1),
     );
-    folder.succeed(&[
+    folder.succeed([
         "diagnose",
         "other.csv",
         "--bench",
@@ -93,8 +65,7 @@ fn mistakes_are_told() {
         "--validate-bench",
         BENCH,
     ]);
-    let mut diagnosis: serde_json::Value =
-        serde_json::from_str(&folder.text("other.json")).unwrap();
+    let mut diagnosis: serde_json::Value = folder.json("other.json");
     let inputs = &mut diagnosis["manifest"]["inputs"];
     inputs[0] = inputs[2].clone();
     inputs[1]["sha256"] = "0".into();
@@ -130,7 +101,7 @@ fn mistakes_are_told() {
             "--limits of x are given more than once",
         ),
     ] {
-        let output = folder.run(&["plan", RECORD, "--bench", BENCH, "--limits", limits]);
+        let output = folder.run(["plan", RECORD, "--bench", BENCH, "--limits", limits]);
         assert_eq!(output.status.code(), Some(2));
         let errors = String::from_utf8(output.stderr).unwrap();
         assert!(errors.contains(message), "{errors}");
@@ -142,7 +113,7 @@ fn unit_folder() -> Folder {
     let folder = Folder::new();
     let log = "tests/data/measured/ring_laser_static/imu.csv";
     let description = "tests/data/measured/ring_laser_static/log.toml";
-    folder.succeed(&[
+    folder.succeed([
         "import",
         "strapdown",
         &repository_argument(log),
@@ -164,7 +135,7 @@ const OF_UNIT: [&str; 4] = ["plan", "r.csv", "--bench", "b.toml"];
 fn a_log_of_a_strapdown_unit_is_planned() {
     let folder = unit_folder();
     let diagnose = ["r.csv", "--bench", "b.toml", "--gyro-axes", "a.csv"];
-    folder.succeed(&[&["diagnose"], &diagnose[..], &["--json", "d.json"]].concat());
+    folder.succeed([&["diagnose"], &diagnose[..], &["--json", "d.json"]].concat());
     let with_axes = [&OF_UNIT[..], &["--gyro-axes", "a.csv", "--json", "p.json"]].concat();
     let said = folder.succeed(&with_axes);
     for words in [
@@ -173,15 +144,15 @@ fn a_log_of_a_strapdown_unit_is_planned() {
     ] {
         assert!(said.contains(words), "{words}\nis not in\n{said}");
     }
-    let fresh: PlanResult = serde_json::from_str(&folder.text("p.json")).unwrap();
+    let fresh: PlanResult = folder.json("p.json");
     assert_eq!(fresh.attitude_of, AttitudeOf::Unit);
     let inputs = fresh.manifest.inputs.iter().map(|input| &*input.path);
     assert_eq!(inputs.collect::<Vec<_>>(), ["r.csv", "b.toml", "a.csv"]);
     // Another attitude tells what the same cannot.
     let best = &fresh.proposals[0].outlook;
     assert!(best.sigma_ratio < 0.9 * fresh.going_on[0].outlook.sigma_ratio);
-    folder.succeed(&[&with_axes[..], &["--diagnosis", "d.json"]].concat());
-    let written: PlanResult = serde_json::from_str(&folder.text("p.json")).unwrap();
+    folder.succeed([&with_axes[..], &["--diagnosis", "d.json"]].concat());
+    let written: PlanResult = folder.json("p.json");
     let pairs = fresh.now.coefficients.iter().zip(&written.now.coefficients);
     for (fresh, written) in pairs {
         // A written result has the noise and the names, and is fitted again: sigmas differ by a thousandth.
@@ -192,7 +163,7 @@ fn a_log_of_a_strapdown_unit_is_planned() {
     }
     // A diagnosis that is given does not change what comes next.
     for given in [&[][..], &["--diagnosis", "d.json"]] {
-        let short = folder.run(&[&OF_UNIT[..], &["--gyro-axes", "a.csv"], given].concat());
+        let short = folder.run([&OF_UNIT[..], &["--gyro-axes", "a.csv"], given].concat());
         let short = String::from_utf8(short.stdout).unwrap();
         let short = short.replace("\\\n", " ");
         let short = short.split_whitespace().collect::<Vec<_>>().join(" ");
@@ -209,9 +180,9 @@ fn a_log_of_a_strapdown_unit_is_planned() {
 fn axes_that_a_diagnosis_was_not_made_with_are_refused() {
     let folder = unit_folder();
     let diagnose = ["diagnose", "r.csv", "--bench", "b.toml"];
-    folder.succeed(&[&diagnose[..], &["--json", "platform.json"]].concat());
+    folder.succeed([&diagnose[..], &["--json", "platform.json"]].concat());
     let with_axes = ["--gyro-axes", "a.csv", "--json", "unit.json"];
-    folder.succeed(&[&diagnose[..], &with_axes].concat());
+    folder.succeed([&diagnose[..], &with_axes].concat());
     // Another file with the same axes.
     folder.put("other.csv", folder.text("a.csv") + "\n");
     let cases: [(&[&str], i32, &str); 4] = [
@@ -237,7 +208,7 @@ fn axes_that_a_diagnosis_was_not_made_with_are_refused() {
         ),
     ];
     for (more, code, message) in cases {
-        let output = folder.run(&[&OF_UNIT[..], more].concat());
+        let output = folder.run([&OF_UNIT[..], more].concat());
         let errors = String::from_utf8_lossy(&output.stderr);
         let errors = errors.split_whitespace().collect::<Vec<_>>().join(" ");
         assert_eq!(output.status.code(), Some(code), "{errors}");

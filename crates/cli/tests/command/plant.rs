@@ -1,6 +1,6 @@
 //! `gyrocal plant`: docs/any-plant.md shows what it prints (`documents.rs`).
 
-use crate::folder::{Folder, repository};
+use crate::folder::{Folder, assert_says, repository};
 
 #[test]
 fn a_missing_file_is_told() {
@@ -10,7 +10,7 @@ fn a_missing_file_is_told() {
             .display()
             .to_string()
     });
-    let errors = folder.fail(&[
+    let errors = folder.fail([
         "plant",
         "diagnose",
         &plant,
@@ -18,7 +18,7 @@ fn a_missing_file_is_told() {
         "--columns",
         "nothing.toml",
     ]);
-    assert!(errors.contains("nothing.toml: cannot be read"), "{errors}");
+    assert_says(&errors, "nothing.toml: cannot be read");
 }
 
 #[test]
@@ -29,7 +29,7 @@ fn the_answer_for_programs_names_the_cause_and_extends_its_plant_alone() {
             .display()
             .to_string()
     };
-    folder.succeed(&[
+    folder.succeed([
         "plant",
         "diagnose",
         &example("plant.json"),
@@ -39,7 +39,7 @@ fn the_answer_for_programs_names_the_cause_and_extends_its_plant_alone() {
         "--json",
         "o.json",
     ]);
-    let mut answer: serde_json::Value = serde_json::from_str(&folder.text("o.json")).unwrap();
+    let mut answer: serde_json::Value = folder.json("o.json");
     // The simulator's spring softens by -0.05 x^3 (crates/truth).
     assert_eq!(answer["findings"][0]["effect"], "v_rate.x^3");
 
@@ -53,7 +53,7 @@ fn the_answer_for_programs_names_the_cause_and_extends_its_plant_alone() {
     ] {
         answer["subject"] = subject;
         folder.put("other.json", answer.to_string());
-        let errors = folder.fail(&["plant", "extend", "other.json"]);
+        let errors = folder.fail("plant extend other.json");
         for words in [
             found,
             "an answer of the plant Duffing",
@@ -68,19 +68,15 @@ fn the_answer_for_programs_names_the_cause_and_extends_its_plant_alone() {
 fn a_new_package_is_written_once_and_names_its_tree() {
     let folder = Folder::new();
     let tree = repository("").display().to_string();
-    folder.succeed(&["new-plant", "oscillator", "--gyrocal", &tree]);
-    assert!(
-        folder
-            .text("oscillator/Cargo.toml")
-            .contains("name = \"oscillator\"")
+    folder.succeed(["new-plant", "oscillator", "--gyrocal", &tree]);
+    assert_says(
+        &folder.text("oscillator/Cargo.toml"),
+        "name = \"oscillator\"",
     );
-    let again = folder.fail(&["new-plant", "oscillator", "--gyrocal", &tree]);
-    assert!(again.contains("exists and is not empty"), "{again}");
-    let nowhere = folder.fail(&["new-plant", "other", "--gyrocal", "oscillator"]);
-    assert!(
-        nowhere.contains("give the root of a tree of gyrocal"),
-        "{nowhere}"
-    );
+    let again = folder.fail(["new-plant", "oscillator", "--gyrocal", &tree]);
+    assert_says(&again, "exists and is not empty");
+    let nowhere = folder.fail("new-plant other --gyrocal oscillator");
+    assert_says(&nowhere, "give the root of a tree of gyrocal");
 }
 
 #[test]
@@ -97,7 +93,7 @@ fn several_records_have_one_answer_and_a_report() {
     fn with<'a>(common: &[&'a str], more: &[&'a str]) -> Vec<&'a str> {
         [common, more].concat()
     }
-    folder.succeed(&with(
+    folder.succeed(with(
         &common,
         &[
             &later,
@@ -109,7 +105,7 @@ fn several_records_have_one_answer_and_a_report() {
             "f",
         ],
     ));
-    let answer: serde_json::Value = serde_json::from_str(&folder.text("o.json")).unwrap();
+    let answer: serde_json::Value = folder.json("o.json");
     assert_eq!(answer["findings"][0]["effect"], "v_rate.x^3");
     let records = answer["records"].as_array().unwrap();
     // The simulator begins both with 0.2 m.
@@ -149,20 +145,16 @@ fn several_records_have_one_answer_and_a_report() {
         folder.path("plant.py"),
     )
     .unwrap();
-    folder.succeed(&["plant", "extend", "o.json"]);
-    assert!(
-        folder
-            .text("plant.py")
-            .contains("plant.extend(\"v_rate.x^3\"")
-    );
+    folder.succeed("plant extend o.json");
+    assert_says(&folder.text("plant.py"), "plant.extend(\"v_rate.x^3\"");
 
-    let twice = folder.fail(&with(&common, &[&record]));
-    assert!(twice.contains("would count twice"), "{twice}");
+    let twice = folder.fail(with(&common, &[&record]));
+    assert_says(&twice, "would count twice");
     for (more, words) in [
         (["--validate", &record], "is the record itself"),
         (["--report", &record], "would overwrite"),
     ] {
-        let refused = folder.run(&with(&common, &more));
+        let refused = folder.run(with(&common, &more));
         let errors = String::from_utf8(refused.stderr).unwrap();
         // A contradictory command line.
         assert_eq!(refused.status.code(), Some(2), "{errors}");
@@ -183,7 +175,7 @@ fn a_record_in_a_pipe_has_the_hash_of_its_file() {
         let all = [&["plant", "diagnose", &plant, record][..], &ends].concat();
         let output = folder.run_with_stdin(&all, "record.csv");
         assert!(output.status.success(), "{output:?}");
-        let answer: serde_json::Value = serde_json::from_str(&folder.text("o.json")).unwrap();
+        let answer: serde_json::Value = folder.json("o.json");
         let inputs = answer["manifest"]["inputs"].as_array().unwrap().iter();
         let hashes: Vec<serde_json::Value> = inputs.map(|one| one["sha256"].clone()).collect();
         (hashes, answer["findings"].clone())
@@ -200,7 +192,7 @@ fn a_wave_of_a_known_period_is_found() {
     assert!(script.contains(end));
     let script = script.replace(end, &format!("plant.period(\"shaft\", 3.0)\n\n{end}"));
     folder.put("plant.py", &script);
-    folder.succeed(&["plant", "derive", "plant.py"]);
+    folder.succeed("plant derive plant.py");
     let text = std::fs::read_to_string(example("record.csv")).unwrap();
     let mut lines = text.lines();
     let mut record = format!("{}\n", lines.next().unwrap());
@@ -222,8 +214,8 @@ fn a_wave_of_a_known_period_is_found() {
         "--columns",
         &columns,
     ];
-    folder.succeed(&[&arguments[..], &["--json", "o.json"]].concat());
-    let answer: serde_json::Value = serde_json::from_str(&folder.text("o.json")).unwrap();
+    folder.succeed([&arguments[..], &["--json", "o.json"]].concat());
+    let answer: serde_json::Value = folder.json("o.json");
     let findings = answer["findings"].as_array().unwrap();
     let sets = findings.iter().map(|one| {
         let others = one["alternatives"].as_array().unwrap().iter();
@@ -278,12 +270,9 @@ fn runs_that_could_be_made_next_are_compared() {
         "weak.csv",
         "strong.csv",
     ];
-    let printed = folder.succeed(&[&arguments[..], &["--json", "o.json"]].concat());
-    assert!(
-        printed.contains("brings standard deviations to"),
-        "{printed}"
-    );
-    let answer: serde_json::Value = serde_json::from_str(&folder.text("o.json")).unwrap();
+    let printed = folder.succeed([&arguments[..], &["--json", "o.json"]].concat());
+    assert_says(&printed, "brings standard deviations to");
+    let answer: serde_json::Value = folder.json("o.json");
     let names = answer["next_runs"]
         .as_array()
         .unwrap()

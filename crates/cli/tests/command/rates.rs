@@ -48,21 +48,14 @@ fn folder(log: String) -> Folder {
     folder
 }
 
-const ARGUMENTS: [&str; 6] = [
-    "rates",
-    "log.csv",
-    "--log-description",
-    "log.toml",
-    "--json",
-    "o.json",
-];
+const ARGUMENTS: &str = "rates log.csv --log-description log.toml --json o.json";
 
 #[test]
 fn a_bias_of_degrees_a_second_is_told_within_earth_rate() {
     let folder = folder(log(25.0, |_, z| z));
-    let text = folder.succeed(&ARGUMENTS);
+    let text = folder.succeed(ARGUMENTS);
     assert!(text.contains("gyro_x.bias"), "{text}");
-    let json: serde_json::Value = serde_json::from_str(&folder.text("o.json")).unwrap();
+    let json: serde_json::Value = folder.json("o.json");
     let log = &json["logs"][0];
     let bias = log["bias_deg_per_h"][0].as_f64().unwrap();
     let half_width = log["bias_half_width_deg_per_h"][0].as_f64().unwrap();
@@ -74,23 +67,14 @@ fn a_bias_of_degrees_a_second_is_told_within_earth_rate() {
 #[test]
 fn the_import_of_such_a_log_names_the_command_for_it() {
     let folder = folder(log(25.0, |_, z| z));
-    let errors = folder.fail(&[
-        "import",
-        "strapdown",
-        "log.csv",
-        "--log-description",
-        "log.toml",
-        "--out",
-        "r.csv",
-        "--averaging-s",
-        "10",
-    ]);
+    let errors = folder
+        .fail("import strapdown log.csv --log-description log.toml --out r.csv --averaging-s 10");
     assert!(errors.contains("gyrocal rates"), "{errors}");
 }
 
 #[test]
 fn a_temperature_in_another_unit_is_told_with_its_line() {
-    let errors = folder(log(298.0, |_, z| z)).fail(&ARGUMENTS);
+    let errors = folder(log(298.0, |_, z| z)).fail(ARGUMENTS);
     assert!(errors.contains("log.csv:2"), "{errors}");
     assert!(errors.contains("unit = \"K\""), "{errors}");
 }
@@ -104,7 +88,7 @@ fn a_saturated_gyro_is_told_with_its_line() {
             z
         }
     };
-    let errors = folder(log(25.0, at_end)).fail(&ARGUMENTS);
+    let errors = folder(log(25.0, at_end)).fail(ARGUMENTS);
     assert!(errors.contains("log.csv:702"), "{errors}");
     assert!(errors.contains("60 samples of `gz`"), "{errors}");
 }
@@ -114,9 +98,9 @@ fn signs_of_the_wrong_way_round_are_told() {
     let vertical_deg_per_s = 15.041_07 * 48.0_f64.to_radians().sin() / 3600.0;
     // A bias of degrees per second and an error of the level would hide the Earth.
     let right =
-        folder(biased_log(0.0, 25.0, |_, z| 0.2 * z + vertical_deg_per_s)).succeed(&ARGUMENTS);
+        folder(biased_log(0.0, 25.0, |_, z| 0.2 * z + vertical_deg_per_s)).succeed(ARGUMENTS);
     assert!(right.starts_with("RATES  "), "{right}");
     let wrong =
-        folder(biased_log(0.0, 25.0, |_, z| 0.2 * z - vertical_deg_per_s)).succeed(&ARGUMENTS);
+        folder(biased_log(0.0, 25.0, |_, z| 0.2 * z - vertical_deg_per_s)).succeed(ARGUMENTS);
     assert!(wrong.starts_with("CHECK SIGNS  "), "{wrong}");
 }

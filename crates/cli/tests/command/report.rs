@@ -1,20 +1,9 @@
 //! `gyrocal report` and `--report` as a user runs them.
 
-use crate::folder::Folder;
-
-const RECORD: &str = "hidden_fault.csv";
-const BENCH: &str = "hidden_fault.bench.toml";
-
-fn folder() -> Folder {
-    let folder = Folder::new();
-    for name in [RECORD, BENCH] {
-        folder.put_example(name);
-    }
-    folder
-}
+use crate::folder::{BENCH, CommandLine, Folder, RECORD, assert_says, hidden_fault as folder};
 
 /// Runs a command whose command line is wrong; returns stderr.
-fn wrong_usage(folder: &Folder, arguments: &[&str]) -> String {
+fn wrong_usage(folder: &Folder, arguments: impl CommandLine) -> String {
     let output = folder.run(arguments);
     assert_eq!(output.status.code(), Some(2));
     String::from_utf8(output.stderr).unwrap()
@@ -75,10 +64,10 @@ fn assert_same_screen(folder: &Folder, name: &str, said: &str) {
 #[test]
 fn reports_of_a_diagnosis_a_result_and_a_plan() {
     let folder = folder();
-    let said = folder.succeed(&[
+    let said = folder.succeed([
         "diagnose", RECORD, "--bench", BENCH, "--report", "r.html", "--json", "d.json",
     ]);
-    assert!(said.contains("r.html: the report"), "{said}");
+    assert_says(&said, "r.html: the report");
     assert_same_screen(&folder, "r.html", &said);
     let words = [
         "<h1>FAULT</h1>",
@@ -93,33 +82,16 @@ fn reports_of_a_diagnosis_a_result_and_a_plan() {
         "latitude +1.000 arcsec",
     ];
     assert_page(&folder, "r.html", &words);
-    let result: serde_json::Value = serde_json::from_str(&folder.text("d.json")).unwrap();
+    let result: serde_json::Value = folder.json("d.json");
     let none = result["findings"][0]["none_of_these"].as_f64().unwrap();
     let unlisted = format!("gyro_y.g_z: probability {:.1} %", 100.0 * none);
     assert_page(&folder, "r.html", &[&unlisted]);
 
-    folder.succeed(&[
-        "plan",
-        RECORD,
-        "--bench",
-        BENCH,
-        "--diagnosis",
-        "d.json",
-        "--hours",
-        "24",
-        "--aim",
-        "sigmas",
-        "--json",
-        "p.json",
-        "--report",
-        "p.html",
-        "--figures",
-        "pictures",
-    ]);
+    folder.succeed(format!("plan {RECORD} --bench {BENCH} --diagnosis d.json --hours 24 --aim sigmas --json p.json --report p.html --figures pictures"));
     assert_picture(&folder, "pictures/proposals.svg", &["Proposals"]);
     assert_page(&folder, "p.html", &["<h1>NEXT RUN</h1>"]);
 
-    folder.succeed(&["report", "d.json", "p.json", "--out", "both.html"]);
+    folder.succeed("report d.json p.json --out both.html");
     let words = ["2 records", "<h1>FAULT</h1>", "<h1>NEXT RUN</h1>"];
     assert_page(&folder, "both.html", &words);
 }
@@ -127,18 +99,9 @@ fn reports_of_a_diagnosis_a_result_and_a_plan() {
 #[test]
 fn reports_of_a_calibration() {
     let folder = folder();
-    let said = folder.succeed(&[
-        "calibrate",
-        RECORD,
-        "--bench",
-        BENCH,
-        "--report",
-        "c.html",
-        "--json",
-        "c.json",
-        "--figures",
-        "pictures",
-    ]);
+    let said = folder.succeed(format!(
+        "calibrate {RECORD} --bench {BENCH} --report c.html --json c.json --figures pictures"
+    ));
     for name in ["residual", "convergence", "coefficients"] {
         assert_picture(&folder, &format!("pictures/{name}.svg"), &["gyro"]);
     }
@@ -152,7 +115,7 @@ fn reports_of_a_calibration() {
     assert_page(&folder, "c.html", &["Mean NIS"]);
     assert_same_screen(&folder, "c.html", &said);
     // A written result has the verdict of the command, also where its coefficients mean nothing.
-    folder.succeed(&["report", "c.json"]);
+    folder.succeed("report c.json");
     assert_page(
         &folder,
         "report.html",
@@ -162,7 +125,7 @@ fn reports_of_a_calibration() {
     let gross = written.replace("\"usable\": true", "\"usable\": false");
     assert_ne!(gross, written);
     folder.put("c.json", gross);
-    folder.succeed(&["report", "c.json", "--out", "gross.html"]);
+    folder.succeed("report c.json --out gross.html");
     assert_page(&folder, "gross.html", &["<h1>NOT USABLE</h1>"]);
 }
 
@@ -170,18 +133,10 @@ fn reports_of_a_calibration() {
 fn reports_and_pictures_of_many_runs_and_of_a_noise() {
     let folder = folder();
     folder.put_example("hidden_fault.scenario.toml");
-    let arguments = [
-        "monte-carlo",
-        "hidden_fault.scenario.toml",
-        "--seeds",
-        "0..2",
-        "--report",
-        "m.html",
-        "--figures",
-        "runs",
-    ];
-    let said = folder.succeed(&arguments);
-    assert!(said.contains("m.html: the report"), "{said}");
+    let arguments =
+        "monte-carlo hidden_fault.scenario.toml --seeds 0..2 --report m.html --figures runs";
+    let said = folder.succeed(arguments);
+    assert_says(&said, "m.html: the report");
     let words = ["runs in their band", "gyro_x.bias", "seeds 0 to 1"];
     assert_page(&folder, "m.html", &words);
     assert_picture(
@@ -193,8 +148,8 @@ fn reports_and_pictures_of_many_runs_and_of_a_noise() {
 
     let rows = (0..2000_u32).map(|row| format!("{}\n", row.wrapping_mul(2_654_435_761) >> 8));
     folder.put("l.csv", "rate\n".to_owned() + &rows.collect::<String>());
-    let line = "allan l.csv --columns rate --rate-hz 10 --report a.html --figures noise";
-    folder.succeed(&line.split(' ').collect::<Vec<_>>());
+    let allan = "allan l.csv --columns rate --rate-hz 10 --report a.html --figures noise";
+    folder.succeed(allan);
     assert_page(&folder, "a.html", &["averaging time"]);
     assert_picture(
         &folder,
@@ -215,49 +170,33 @@ fn assert_picture(folder: &Folder, name: &str, words: &[&str]) {
 #[test]
 fn a_report_that_cannot_be_written_is_told_before_the_work() {
     let folder = folder();
-    let refused = folder.fail(&[
-        "diagnose",
-        RECORD,
-        "--bench",
-        BENCH,
-        "--report",
-        "nowhere/r.html",
-    ]);
-    assert!(refused.contains("nowhere/r.html"), "{refused}");
+    let refused = folder.fail(format!(
+        "diagnose {RECORD} --bench {BENCH} --report nowhere/r.html"
+    ));
+    assert_says(&refused, "nowhere/r.html");
     assert!(!folder.path("nowhere").exists());
     let refused = wrong_usage(
         &folder,
-        &["report", RECORD, "--bench", BENCH, "--out", BENCH],
+        ["report", RECORD, "--bench", BENCH, "--out", BENCH],
     );
-    assert!(refused.contains("would overwrite the input"), "{refused}");
-    let refused = wrong_usage(&folder, &["report", RECORD]);
-    assert!(
-        refused.contains("0 of --bench for 1 of records"),
-        "{refused}"
-    );
+    assert_says(&refused, "would overwrite the input");
+    let refused = wrong_usage(&folder, ["report", RECORD]);
+    assert_says(&refused, "0 of --bench for 1 of records");
 }
 
 #[test]
 fn results_of_other_versions_and_other_files_are_refused() {
     let folder = folder();
     folder.put("old.json", r#"{"schema_version": 1, "findings": []}"#);
-    let refused = folder.fail(&["report", "old.json"]);
-    assert!(
-        refused.contains("schema_version 1") && refused.contains("3, the version"),
-        "{refused}"
-    );
+    let refused = folder.fail("report old.json");
+    assert_says(&refused, "schema_version 1");
+    assert_says(&refused, "3, the version");
     folder.put("new.json", r#"{"schema_version": 99, "verdict_text": ""}"#);
-    let refused = folder.fail(&["report", "new.json"]);
-    assert!(
-        refused.contains("schema_version 99, expected 2"),
-        "{refused}"
-    );
+    let refused = folder.fail("report new.json");
+    assert_says(&refused, "schema_version 99, expected 2");
     folder.put("other.json", "{}");
-    let refused = folder.fail(&["report", "other.json"]);
-    assert!(
-        refused.contains("not a result of diagnose, calibrate or plan"),
-        "{refused}"
-    );
+    let refused = folder.fail("report other.json");
+    assert_says(&refused, "not a result of diagnose, calibrate or plan");
     assert!(!folder.path("report.html").exists());
 }
 
@@ -273,26 +212,12 @@ fn an_uncertainty_budget_of_two_runs_conforms_to_its_schema() {
     }
     let rivals = ["rivals.csv", "--bench-out", "rivals.bench.toml"];
     let simulate = ["simulate", "rivals.scenario.toml", "--out"];
-    folder.succeed_as_is(&[&simulate[..], &rivals].concat());
-    let output = folder.run_on_a_terminal(&[
-        "report",
-        "rivals.csv",
-        "three_days.csv",
-        "--bench",
-        "rivals.bench.toml",
-        "--bench",
-        "three_days.bench.toml",
-        "--uncertainty",
-        "--json",
-        "budget.json",
-        "--verbose",
-        "--out",
-        "u.html",
-    ]);
+    folder.succeed_as_is([&simulate[..], &rivals].concat());
+    let output = folder.run_on_a_terminal("report rivals.csv three_days.csv --bench rivals.bench.toml --bench three_days.bench.toml --uncertainty --json budget.json --verbose --out u.html");
     assert_eq!(output.status.code(), Some(0));
     let said = String::from_utf8(output.stdout).unwrap();
     crate::contract::assert_conforms(&folder, &["report", "--json", "budget.json"]);
-    let found: serde_json::Value = serde_json::from_str(&folder.text("budget.json")).unwrap();
+    let found: serde_json::Value = folder.json("budget.json");
     let records = found["records"].as_array().unwrap();
     // A fault of several explanations leaves models open, whose estimates scatter.
     assert!(records[0]["models"].as_array().unwrap().len() > 1);
@@ -327,20 +252,13 @@ fn an_uncertainty_budget_of_two_runs_conforms_to_its_schema() {
     ];
     assert_page(&folder, "u.html", &words);
     let wrong = ["report", RECORD, "--bench", BENCH, "--json", "b.json"];
-    assert!(wrong_usage(&folder, &wrong).contains("--uncertainty"));
+    assert!(wrong_usage(&folder, wrong).contains("--uncertainty"));
 
     // A record is one run, also under another name.
     folder.put("copy.csv", folder.text("rivals.csv"));
-    let twice = folder.fail(&[
-        "report",
-        "rivals.csv",
-        "copy.csv",
-        "--bench",
-        "rivals.bench.toml",
-        "--uncertainty",
-    ]);
-    assert!(
-        twice.contains("copy.csv: found 1081 consecutive rows that rivals.csv has too"),
-        "{twice}"
+    let twice = folder.fail("report rivals.csv copy.csv --bench rivals.bench.toml --uncertainty");
+    assert_says(
+        &twice,
+        "copy.csv: found 1081 consecutive rows that rivals.csv has too",
     );
 }

@@ -2,9 +2,9 @@
 
 use std::fs;
 
-use crate::folder::{Folder, repository};
+use crate::folder::{Folder, assert_says, repository};
 
-const SCENARIO: &str = "\
+pub(crate) const SCENARIO: &str = "\
 seed = 1
 [site]
 latitude_deg = 39.1
@@ -29,21 +29,12 @@ fn folder() -> Folder {
     folder
 }
 
-const PLAIN: [&str; 4] = ["simulate", "s.toml", "--out", "r.csv"];
+const PLAIN: &str = "simulate s.toml --out r.csv";
 
 #[test]
 fn record_bench_and_truth_are_written() {
     let folder = folder();
-    let said = folder.succeed_as_is(&[
-        "simulate",
-        "s.toml",
-        "--out",
-        "r.csv",
-        "--bench-out",
-        "b.toml",
-        "--json",
-        "t.json",
-    ]);
+    let said = folder.succeed_as_is("simulate s.toml --out r.csv --bench-out b.toml --json t.json");
     assert!(
         said.starts_with("SIMULATED  r.csv: 61 rows over 0.04 days, seed 1\n"),
         "{said}"
@@ -51,7 +42,7 @@ fn record_bench_and_truth_are_written() {
     assert_eq!(folder.names(), ["b.toml", "r.csv", "s.toml", "t.json"]);
     assert_eq!(folder.text("r.csv").lines().count(), 62);
     assert!(folder.text("b.toml").contains("latitude_deg = 39.1\n"));
-    let truth: serde_json::Value = serde_json::from_str(&folder.text("t.json")).unwrap();
+    let truth: serde_json::Value = folder.json("t.json");
     assert_eq!(truth["schema_version"], 1);
     assert_eq!(truth["coefficients"][4]["name"], "gyro_y.g_y");
     assert_eq!(truth["coefficients"][4]["value"], 0.2);
@@ -71,11 +62,10 @@ size = 0.35
 effect = \"accel_x.temperature\"
 size = 1e-4
 ";
-    let outputs = ["--bench-out", "b.toml", "--json", "t.json"];
     let simulate = |scenario: String| {
         let folder = Folder::new();
         folder.put("s.toml", scenario);
-        let said = folder.succeed(&[&PLAIN[..], &outputs].concat());
+        let said = folder.succeed(format!("{PLAIN} --bench-out b.toml --json t.json"));
         (folder, said)
     };
     let (clean, said_clean) = simulate(format!("{SCENARIO}[temperature]\n"));
@@ -87,14 +77,14 @@ size = 1e-4
     let (record, other) = (faulty.text("r.csv"), clean.text("r.csv"));
     assert_ne!(record, other);
     assert!(record.starts_with("time_s,accel_x_g,accel_y_g,accel_z_g,temperature_c\n"));
-    let truth: serde_json::Value = serde_json::from_str(&faulty.text("t.json")).unwrap();
+    let truth: serde_json::Value = faulty.json("t.json");
     assert_eq!(truth["rows"], 61);
     assert_eq!(truth["hidden"][0]["effect"], "gyro_y.g_z");
     assert_eq!(
         truth["hidden"][0]["parameters"],
         serde_json::json!([{ "name": "size", "value": 0.35, "unit": "deg/h/g" }])
     );
-    let truth: serde_json::Value = serde_json::from_str(&clean.text("t.json")).unwrap();
+    let truth: serde_json::Value = clean.json("t.json");
     assert_eq!(truth["hidden"], serde_json::json!([]));
 }
 
@@ -103,7 +93,7 @@ fn a_mistake_in_a_hidden_effect_is_shown_where_it_is() {
     let folder = Folder::new();
     let hidden = "[[hidden]]\neffect = \"gyro_y.gz\"\nsize = 1\n";
     folder.put("s.toml", format!("{SCENARIO}{hidden}"));
-    let errors = folder.fail(&PLAIN);
+    let errors = folder.fail(PLAIN);
     for part in [
         "s.toml:18:10: found the unknown effect `\"gyro_y.gz\"`",
         "here",
@@ -116,13 +106,13 @@ fn a_mistake_in_a_hidden_effect_is_shown_where_it_is() {
 #[test]
 fn the_seed_decides_and_nothing_else() {
     let folder = folder();
-    folder.succeed(&PLAIN);
+    folder.succeed(PLAIN);
     let first = folder.text("r.csv");
-    folder.succeed(&PLAIN);
+    folder.succeed(PLAIN);
     assert_eq!(folder.text("r.csv"), first);
-    folder.succeed(&["simulate", "s.toml", "--out", "r.csv", "--seed", "2"]);
+    folder.succeed("simulate s.toml --out r.csv --seed 2");
     assert_ne!(folder.text("r.csv"), first);
-    folder.succeed(&["simulate", "s.toml", "--out", "r.csv", "--seed", "1"]);
+    folder.succeed("simulate s.toml --out r.csv --seed 1");
     assert_eq!(folder.text("r.csv"), first);
 }
 
@@ -131,7 +121,7 @@ fn the_record_that_ships_is_what_its_scenario_gives() {
     let folder = Folder::new();
     let scenario = repository("examples/data/three_days.scenario.toml");
     let scenario = scenario.to_str().unwrap();
-    folder.succeed(&[
+    folder.succeed([
         "simulate",
         scenario,
         "--out",
@@ -194,16 +184,7 @@ fn bad_scenarios_are_shown_where_they_are_wrong() {
     for (right, wrong, message) in cases {
         let folder = Folder::new();
         folder.put("s.toml", SCENARIO.replace(right, wrong));
-        let errors = folder.fail(&[
-            "simulate",
-            "s.toml",
-            "--out",
-            "r.csv",
-            "--bench-out",
-            "b.toml",
-            "--json",
-            "t.json",
-        ]);
+        let errors = folder.fail("simulate s.toml --out r.csv --bench-out b.toml --json t.json");
         assert!(errors.contains(message), "{message}\nis not in\n{errors}");
         // The line is shown and marked; an empty file has none.
         assert_eq!(errors.contains("here"), right != SCENARIO, "{errors}");
@@ -214,17 +195,14 @@ fn bad_scenarios_are_shown_where_they_are_wrong() {
 fn a_scenario_that_is_not_text_is_refused() {
     let folder = Folder::new();
     folder.put("s.toml", b"seed = 1\n# caf\xe9\n");
-    let errors = folder.fail(&PLAIN);
-    assert!(
-        errors.contains("s.toml:2:6: found byte 0xE9, expected UTF-8 text"),
-        "{errors}"
-    );
+    let errors = folder.fail(PLAIN);
+    assert_says(&errors, "s.toml:2:6: found byte 0xE9, expected UTF-8 text");
 }
 
 #[test]
 fn a_scenario_that_is_not_there_is_named() {
-    let errors = Folder::new().fail(&PLAIN);
-    assert!(errors.contains("s.toml: cannot be read: "), "{errors}");
+    let errors = Folder::new().fail(PLAIN);
+    assert_says(&errors, "s.toml: cannot be read: ");
 }
 
 #[test]
@@ -232,36 +210,25 @@ fn an_output_that_cannot_be_written_leaves_no_other() {
     let folder = folder();
     fs::create_dir(folder.path("taken")).unwrap();
     for path in ["no/such/folder/t.json", "taken"] {
-        let errors = folder.fail(&["simulate", "s.toml", "--out", "r.csv", "--json", path]);
-        assert!(
-            errors.contains(&format!("{path}: cannot be written: ")),
-            "{errors}"
-        );
+        let errors = folder.fail(["simulate", "s.toml", "--out", "r.csv", "--json", path]);
+        assert_says(&errors, &format!("{path}: cannot be written: "));
     }
     folder.put("r.csv", "old");
-    folder.fail(&["simulate", "s.toml", "--out", "r.csv", "--json", "taken"]);
+    folder.fail("simulate s.toml --out r.csv --json taken");
     assert_eq!(folder.text("r.csv"), "old");
 }
 
 #[test]
 fn a_wrong_command_line_is_a_usage_error() {
     let folder = folder();
-    let cases: [&[&str]; 6] = [
-        &[],
-        &["simulate"],
-        &["simulate", "s.toml"],
-        &["simulate", "s.toml", "--out", "r.csv", "--seed", "-1"],
-        &["simulate", "s.toml", "--out", "./s.toml"],
-        &[
-            "simulate",
-            "s.toml",
-            "--out",
-            "r.csv",
-            "--bench-out",
-            "./r.csv",
-        ],
-    ];
-    for arguments in cases {
+    for arguments in [
+        "",
+        "simulate",
+        "simulate s.toml",
+        "simulate s.toml --out r.csv --seed -1",
+        "simulate s.toml --out ./s.toml",
+        "simulate s.toml --out r.csv --bench-out ./r.csv",
+    ] {
         let output = folder.run(arguments);
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");
         assert_eq!(folder.names(), ["s.toml"]);
@@ -272,8 +239,8 @@ fn a_wrong_command_line_is_a_usage_error() {
 #[test]
 fn verbose_tells_more_on_stderr_only() {
     let folder = folder();
-    let quiet = folder.run(&PLAIN);
-    let verbose = folder.run(&["-vv", "simulate", "s.toml", "--out", "r.csv"]);
+    let quiet = folder.run(PLAIN);
+    let verbose = folder.run("-vv simulate s.toml --out r.csv");
     assert!(quiet.stderr.is_empty());
     assert!(
         String::from_utf8(verbose.stderr)
@@ -290,11 +257,11 @@ fn an_answer_that_cannot_be_told_is_a_failure() {
     let full = fs::File::options().write(true).open("/dev/full").unwrap();
     let output = std::process::Command::new(assert_cmd::cargo::cargo_bin("gyrocal"))
         .current_dir(folder.path(""))
-        .args(PLAIN)
+        .args(PLAIN.split(' '))
         .stdout(full)
         .output()
         .unwrap();
     assert_eq!(output.status.code(), Some(1));
     let errors = String::from_utf8(output.stderr).unwrap();
-    assert!(errors.contains("stdout: cannot be written"), "{errors}");
+    assert_says(&errors, "stdout: cannot be written");
 }

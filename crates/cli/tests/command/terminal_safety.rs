@@ -5,7 +5,7 @@ use std::process::Output;
 use std::time::{Duration, Instant};
 
 use crate::diagnose::hidden_fault;
-use crate::folder::{Folder, example, repository_argument};
+use crate::folder::{Folder, assert_says, example, repository_argument};
 
 /// Characters that set colours and titles, ring, end a text, and reorder letters.
 const EVIL: &str = "\u{1b}]0;title\u{7}\u{1b}[31m\u{9b}2J\u{202e}\u{2066}\u{200f}\u{7f}";
@@ -41,7 +41,7 @@ fn assert_record_harmless(record: impl AsRef<[u8]>, quoted: &str) {
     let folder = folder();
     folder.put("r.csv", record);
     for command in ["calibrate", "diagnose", "plan"] {
-        let output = folder.run(&[command, "r.csv", "--bench", "b.toml"]);
+        let output = folder.run([command, "r.csv", "--bench", "b.toml"]);
         let errors = assert_harmless(&output);
         assert_eq!(output.status.code(), Some(1), "{errors}");
         assert!(errors.contains(quoted), "{quoted}\nis not in\n{errors}");
@@ -66,11 +66,8 @@ fn content_of_descriptions_is_escaped() {
         "bad.toml",
         format!("{key}{}", example("three_days.bench.toml")),
     );
-    let errors = assert_harmless(&folder.run(&["calibrate", "r.csv", "--bench", "bad.toml"]));
-    assert!(
-        errors.contains("the unknown key `\\u{1b}]0;title\\u{7}\\u{202e}`"),
-        "{errors}"
-    );
+    let errors = assert_harmless(&folder.run("calibrate r.csv --bench bad.toml"));
+    assert_says(&errors, "the unknown key `\\u{1b}]0;title\\u{7}\\u{202e}`");
     folder.put("raw.toml", format!("a = \"{EVIL}\"\n"));
     for arguments in [
         &["calibrate", "r.csv", "--bench", "raw.toml"][..],
@@ -99,8 +96,8 @@ fn content_of_logs_is_escaped() {
     let folder = Folder::new();
     folder.put("log.csv", format!("time,{EVIL}\n0,1\n"));
     let arguments = ["allan", "log.csv", "--columns", "x", "--rate-hz", "1"];
-    let errors = assert_harmless(&folder.run(&arguments));
-    assert!(errors.contains("\\u{9b}"), "{errors}");
+    let errors = assert_harmless(&folder.run(arguments));
+    assert_says(&errors, "\\u{9b}");
     // A column that exists is named in the answer.
     let rows: String = (0..200)
         .map(|row| format!("{row},{}\n", row * row % 17))
@@ -117,11 +114,11 @@ fn content_of_logs_is_escaped() {
         "o.json",
         "-v",
     ];
-    let output = folder.run(&arguments);
+    let output = folder.run(arguments);
     assert_harmless(&output);
     assert_eq!(output.status.code(), Some(0));
     // Results for programs are exact.
-    let result: serde_json::Value = serde_json::from_str(&folder.text("o.json")).unwrap();
+    let result: serde_json::Value = folder.json("o.json");
     assert_eq!(result["columns"][0]["name"], EVIL);
 }
 
@@ -136,7 +133,7 @@ fn names_in_results_are_escaped() {
     folder.put("raw.json", diagnosis.replace("gyro_y.g_z", EVIL));
     folder.put("none.json", format!("{{\"{name}\": 1}}"));
     for diagnosis in ["forged.json", "raw.json", "none.json"] {
-        let extend = folder.run(&["extend", diagnosis, "--out", "x.model.toml"]);
+        let extend = folder.run(["extend", diagnosis, "--out", "x.model.toml"]);
         let errors = assert_harmless(&extend);
         assert_eq!(extend.status.code(), Some(1), "{errors}");
         let plan = [
@@ -147,7 +144,7 @@ fn names_in_results_are_escaped() {
             "--diagnosis",
             diagnosis,
         ];
-        assert_harmless(&folder.run(&plan));
+        assert_harmless(&folder.run(plan));
     }
 }
 
@@ -157,7 +154,7 @@ fn file_names_and_arguments_are_escaped() {
     let folder = folder();
     let evil = format!("{EVIL}\nFAULT.csv");
     folder.put(&evil, example("three_days.csv"));
-    let output = folder.run(&[
+    let output = folder.run([
         "diagnose", &evil, "--bench", "b.toml", "--json", "o.json", "-v",
     ]);
     assert_harmless(&output);
@@ -167,7 +164,7 @@ fn file_names_and_arguments_are_escaped() {
         said.contains("\\nFAULT.csv") && !said.contains("\nFAULT.csv"),
         "{said}"
     );
-    let result: serde_json::Value = serde_json::from_str(&folder.text("o.json")).unwrap();
+    let result: serde_json::Value = folder.json("o.json");
     assert_eq!(result["manifest"]["inputs"][0]["path"], *evil);
     let missing = format!("no{EVIL}.csv");
     for arguments in [
@@ -212,12 +209,12 @@ fn file_names_and_arguments_are_escaped() {
 fn reports_on_the_work_are_escaped() {
     let folder = folder();
     folder.put(EVIL, example("three_days.csv"));
-    assert_harmless(&folder.run(&["-vvvv", "diagnose", EVIL, "--bench", "b.toml"]));
+    assert_harmless(&folder.run(["-vvvv", "diagnose", EVIL, "--bench", "b.toml"]));
     let scenario = repository_argument("examples/data/three_days.scenario.toml");
     let arguments = [
         "-vvvv", "simulate", &*scenario, "--out", EVIL, "--json", "t.json",
     ];
-    assert_harmless(&folder.run(&arguments));
+    assert_harmless(&folder.run(arguments));
 }
 
 /// A refusal within seconds, of a few hundred characters; the time has room for a build without
@@ -282,38 +279,26 @@ fn a_last_line_that_is_cut_off_is_told() {
     for cut in [&whole[..at], &whole[..=at], &whole[..at - 3]] {
         folder.put("cut.csv", cut);
         for command in ["calibrate", "diagnose", "plan"] {
-            let errors = folder.fail(&[command, "cut.csv", "--bench", "b.toml"]);
-            assert!(
-                errors.contains("cut.csv:4322:1: found a last line that is cut off"),
-                "{errors}"
-            );
-            assert!(
-                errors.contains("copy the file again, or delete this line"),
-                "{errors}"
-            );
+            let errors = folder.fail([command, "cut.csv", "--bench", "b.toml"]);
+            assert_says(&errors, "cut.csv:4322:1: found a last line that is cut off");
+            assert_says(&errors, "copy the file again, or delete this line");
         }
     }
     // Within the last number it may be whole: that is a warning.
     folder.put("short.csv", &whole[..at + 5]);
-    let output = folder.run(&["calibrate", "short.csv", "--bench", "b.toml"]);
+    let output = folder.run("calibrate short.csv --bench b.toml");
     let errors = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(0));
-    assert!(
-        errors.contains("short.csv:4322: the file ends without a line feed"),
-        "{errors}"
-    );
+    assert_says(&errors, "short.csv:4322: the file ends without a line feed");
     folder.put("whole.csv", whole);
-    let output = folder.run(&["calibrate", "whole.csv", "--bench", "b.toml"]);
+    let output = folder.run("calibrate whole.csv --bench b.toml");
     assert!(output.stderr.is_empty());
     let rows: String = (0..200)
         .map(|row| format!("{row},{}\n", row * row % 17))
         .collect();
     folder.put("log.csv", format!("time,x\n{rows}200"));
-    let errors = folder.fail(&["allan", "log.csv", "--columns", "x", "--rate-hz", "1"]);
-    assert!(
-        errors.contains("log.csv:202:1: found a last line that is cut off"),
-        "{errors}"
-    );
+    let errors = folder.fail("allan log.csv --columns x --rate-hz 1");
+    assert_says(&errors, "log.csv:202:1: found a last line that is cut off");
 }
 
 #[test]
@@ -352,6 +337,6 @@ fn swapped_arguments_are_told() {
     ] {
         let errors = folder.fail(arguments);
         assert!(errors.contains(words), "{words}\nis not in\n{errors}");
-        assert!(errors.contains("the two may be swapped"), "{errors}");
+        assert_says(&errors, "the two may be swapped");
     }
 }

@@ -1,6 +1,6 @@
 //! `gyrocal tumble` on the recording that ships with the repository.
 
-use crate::folder::{Folder, repository, repository_argument};
+use crate::folder::{Folder, assert_says, repository, repository_argument};
 
 const LOG: &str = "tests/data/measured/xsens_38_positions/imu_counts.csv";
 const DESCRIPTION: &str = "tests/data/measured/xsens_38_positions/log.toml";
@@ -20,9 +20,9 @@ fn arguments<'a>(log: &'a str, description: &'a str) -> [&'a str; 6] {
 fn the_nominal_law_of_the_recorded_instrument_is_wrong_and_cross_axis_terms_are_why() {
     let folder = Folder::new();
     let (log, description) = (repository_argument(LOG), repository_argument(DESCRIPTION));
-    let text = folder.succeed(&arguments(&log, &description));
-    assert!(text.contains("38 static stops"), "{text}");
-    let json: serde_json::Value = serde_json::from_str(&folder.text("o.json")).unwrap();
+    let text = folder.succeed(arguments(&log, &description));
+    assert_says(&text, "38 static stops");
+    let json: serde_json::Value = folder.json("o.json");
     let sensors = &json["sensors"];
     for gyro in 0..3 {
         // The scale published with the recording is about 4770, accurate to half a percent.
@@ -100,19 +100,15 @@ fn causes_are_drawn_as_the_readme_shows_them() {
     let folder = Folder::new();
     let (log, description) = (repository_argument(LOG), repository_argument(DESCRIPTION));
     let arguments = arguments(&log, &description);
-    let text = folder.succeed(&[&arguments[..4], &["--figures", "pictures"]].concat());
-    assert!(text.contains("pictures: 3 pictures"), "{text}");
+    let text = folder.succeed([&arguments[..4], &["--figures", "pictures"]].concat());
+    assert_says(&text, "pictures: 3 pictures");
     let terms = folder.text("pictures/terms.svg");
     for cause in ["gyro_x.g_y", "gyro_y.g_z", "gyro_z.g_x"] {
         assert!(terms.contains(cause), "{cause}");
     }
     // One dot for each stop in each of six panels, and one in the key.
     assert_eq!(terms.matches("<circle").count(), 6 * 38 + 1);
-    assert!(
-        folder
-            .text("pictures/residual.svg")
-            .contains("extended law")
-    );
+    assert_says(&folder.text("pictures/residual.svg"), "extended law");
     assert!(folder.text("pictures/laws.svg").contains("nominal law"));
     // The picture of the README is the one that its command draws.
     let shown = std::fs::read(repository("docs/pictures/xsens-causes.png")).unwrap();
@@ -131,7 +127,7 @@ fn outputs_go_into_a_folder_that_the_command_makes_but_not_over_each_other() {
     let arguments = arguments(&log, &description);
     let command = &arguments[..4];
     let refused = |more: &[&str]| {
-        let output = folder.run(&[command, more].concat());
+        let output = folder.run([command, more].concat());
         assert_eq!(output.status.code(), Some(2));
         String::from_utf8(output.stderr).unwrap()
     };
@@ -139,16 +135,13 @@ fn outputs_go_into_a_folder_that_the_command_makes_but_not_over_each_other() {
     let expected = "--json new/terms.svg is among the pictures of --figures new";
     assert!(errors.contains(expected), "{errors}");
     let errors = refused(&["--figures", "new", "--json", "new"]);
-    assert!(
-        errors.contains("--json new would overwrite --figures new"),
-        "{errors}"
-    );
+    assert_says(&errors, "--json new would overwrite --figures new");
     // One stop is too few, which is found later.
     let few = ["--stop", "1:50", "--figures", "n", "--json", "n/s/o.json"];
-    let errors = folder.fail(&[command, &few].concat());
-    assert!(errors.contains("n/s/o.json: cannot be written"), "{errors}");
+    let errors = folder.fail([command, &few].concat());
+    assert_says(&errors, "n/s/o.json: cannot be written");
     let outputs = ["--figures", "new/pictures", "--json", "new/o.json"];
-    folder.succeed(&[command, &outputs].concat());
+    folder.succeed([command, &outputs].concat());
     assert!(folder.path("new/o.json").exists());
     assert!(folder.path("new/pictures/terms.svg").exists());
 }
@@ -158,13 +151,13 @@ fn a_rare_false_alarm_does_not_hide_what_is_there() {
     let folder = Folder::new();
     let (log, description) = (repository_argument(LOG), repository_argument(DESCRIPTION));
     let arguments = arguments(&log, &description);
-    let text = folder.succeed(&[&arguments[..4], &["--false-alarm", "0.0009"]].concat());
+    let text = folder.succeed([&arguments[..4], &["--false-alarm", "0.0009"]].concat());
     // 0.0009 asks for 11111 permutations; the six terms have an F of 43 or more.
     assert_eq!(text.matches("p = 9e-5").count(), 6, "{text}");
-    let output = folder.run(&[&arguments[..4], &["--false-alarm", "1e-5"]].concat());
+    let output = folder.run([&arguments[..4], &["--false-alarm", "1e-5"]].concat());
     assert_eq!(output.status.code(), Some(2));
     let errors = String::from_utf8(output.stderr).unwrap();
-    assert!(errors.contains("expected 1e-4 or more"), "{errors}");
+    assert_says(&errors, "expected 1e-4 or more");
 }
 
 #[test]
@@ -190,8 +183,8 @@ fn a_log_that_is_never_static_is_told() {
     }
     folder.put("l.csv", moving);
     let description = repository_argument(DESCRIPTION);
-    let errors = folder.fail(&arguments("l.csv", &description));
-    assert!(errors.contains("static"), "{errors}");
+    let errors = folder.fail(arguments("l.csv", &description));
+    assert_says(&errors, "static");
 }
 
 #[test]
@@ -202,7 +195,7 @@ fn bad_input_is_told() {
         let folder = Folder::new();
         folder.put("l.csv", log);
         folder.put("l.toml", description);
-        folder.fail(&arguments("l.csv", "l.toml"))
+        folder.fail(arguments("l.csv", "l.toml"))
     };
     let without_scale = description.replace("counts_per_g = \"from-stops\"\n", "");
     let cases = [
@@ -280,8 +273,8 @@ fn stops_can_be_given_and_too_few_are_told() {
     let folder = Folder::new();
     let (log, description) = (repository_argument(LOG), repository_argument(DESCRIPTION));
     let two = ["--stop", "1:50", "--stop", "56:63"];
-    let errors = folder.fail(&[&arguments(&log, &description)[..4], &two].concat());
-    assert!(errors.contains("found 2 static stops"), "{errors}");
+    let errors = folder.fail([&arguments(&log, &description)[..4], &two].concat());
+    assert_says(&errors, "found 2 static stops");
     for wrong in [
         &["--stop", "5"][..],
         &["--shortest-stop-s", "nan"],
@@ -290,7 +283,7 @@ fn stops_can_be_given_and_too_few_are_told() {
         &["--stop", "1:50", "--shortest-stop-s", "3"],
         &["--stop", "1:50", "--quiet-factor", "3"],
     ] {
-        let output = folder.run(&[&arguments(&log, &description)[..4], wrong].concat());
+        let output = folder.run([&arguments(&log, &description)[..4], wrong].concat());
         assert_eq!(output.status.code(), Some(2), "{wrong:?}");
     }
 }
@@ -300,10 +293,10 @@ fn too_few_stops_to_leave_some_out_are_told() {
     let folder = Folder::new();
     let (log, description) = (repository_argument(LOG), repository_argument(DESCRIPTION));
     let arguments = arguments(&log, &description);
-    let text = folder.succeed(&[&arguments[..4], &["--left-out", "1000"]].concat());
+    let text = folder.succeed([&arguments[..4], &["--left-out", "1000"]].concat());
     let expected = "cannot be measured: without 1000 successive";
     assert!(text.contains(expected), "{text}");
-    assert!(text.contains("Give a smaller --left-out"), "{text}");
+    assert_says(&text, "Give a smaller --left-out");
 }
 
 /// A log of one position at 50 Hz for 20 s, of a unit whose gyro x drifts by 400 deg/h/g along z.
@@ -351,21 +344,18 @@ fn six_logs_are_six_positions() {
     arguments.extend(names.iter().map(String::as_str));
     arguments.extend(["--log-description", "log.toml", "--json", "o.json"]);
     let text = folder.succeed(&arguments);
-    assert!(
-        text.contains("0.csv and 5 further logs: 6 static stops"),
-        "{text}"
-    );
-    assert!(text.contains("accel_x.bias"), "{text}");
-    assert!(
-        text.contains("Not determined by these positions: accel_x.misalignment_y"),
-        "{text}"
+    assert_says(&text, "0.csv and 5 further logs: 6 static stops");
+    assert_says(&text, "accel_x.bias");
+    assert_says(
+        &text,
+        "Not determined by these positions: accel_x.misalignment_y",
     );
     // Two of them tell nothing of the noise between stops.
-    let two = folder.succeed(&["tumble", "4.csv", "5.csv", "--log-description", "log.toml"]);
+    let two = folder.succeed("tumble 4.csv 5.csv --log-description log.toml");
     assert!(two.starts_with("NOT TESTED  too few stops"), "{two}");
-    assert!(two.contains("a test needs six"), "{two}");
+    assert_says(&two, "a test needs six");
     assert!(!two.contains("how sure"), "{two}");
-    let json: serde_json::Value = serde_json::from_str(&folder.text("o.json")).unwrap();
+    let json: serde_json::Value = folder.json("o.json");
     let finding = &json["few_positions"]["findings"][0];
     assert_eq!(finding["effect"], "gyro_x.g_z");
     let [estimate, sigma] = ["estimate", "sigma"].map(|key| finding[key].as_f64().unwrap());
@@ -377,6 +367,6 @@ fn six_logs_are_six_positions() {
         "{bias}"
     );
     // Positions that are one determine nothing more.
-    let errors = folder.fail(&["tumble", "0.csv", "0.csv", "--log-description", "log.toml"]);
-    assert!(errors.contains("all in one position"), "{errors}");
+    let errors = folder.fail("tumble 0.csv 0.csv --log-description log.toml");
+    assert_says(&errors, "all in one position");
 }

@@ -16,7 +16,7 @@ fn watch(folder: &Folder, record: &str, more: &[&str]) -> (String, Value) {
     words.extend(["--json", "o.json"]);
     words.extend(more);
     let text = folder.succeed(&words);
-    let json: Value = serde_json::from_str(&folder.text("o.json")).unwrap();
+    let json: Value = folder.json("o.json");
     (text, json["watch"].clone())
 }
 
@@ -48,6 +48,6 @@ fn a_missing_bench_is_told() {
         "r.csv",
         "time_s,accel_x_g,accel_y_g,accel_z_g\n0,0,0,1\n60,0,0,1\n",
     );
-    let errors = folder.fail(&["watch", "r.csv", "--bench", "b.toml"]);
+    let errors = folder.fail("watch r.csv --bench b.toml");
     assert!(errors.contains("b.toml"), "{errors}");
 }

@@ -6,19 +6,6 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 /// What is left of the information of a column must be more than this share to be seen.
 const VISIBLE: f64 = 1e-3;
 
-impl Best<'_> {
-    fn statistic(&self, table: &ScoreTable) -> f64 {
-        let joint = Projection::of(table, self.columns);
-        joint.map_or(f64::NEG_INFINITY, |joint| joint.statistic())
-    }
-}
-
-/// One onset of an effect.
-#[derive(Clone, Copy)]
-struct Best<'a> {
-    columns: &'a [usize],
-}
-
 /// Some columns with the factor of their correlation.
 struct Projection {
     columns: Vec<usize>,
@@ -41,8 +28,13 @@ impl Projection {
         })
     }
 
-    fn statistic(&self) -> f64 {
-        self.whitened.norm_squared()
+    /// Of no columns.
+    fn none() -> Self {
+        Self {
+            columns: Vec::new(),
+            lower: DMatrix::zeros(0, 0),
+            whitened: DVector::zeros(0),
+        }
     }
 }
 
@@ -50,10 +42,13 @@ impl Projection {
 pub(crate) fn given(table: &ScoreTable, named: &str, effects: &[&str]) -> ScoreTable {
     let own = table.effects.iter().find(|own| own.id == named);
     let variants = own.iter().flat_map(|own| &own.variants);
-    let best = variants
-        .map(|columns| Best { columns })
-        .max_by(|a, b| a.statistic(table).total_cmp(&b.statistic(table)));
-    let projection = best.and_then(|best| Projection::of(table, best.columns));
+    let statistic = |columns: &[usize]| {
+        let joint = Projection::of(table, columns);
+        joint.map_or(f64::NEG_INFINITY, |joint| joint.whitened.norm_squared())
+    };
+    let best = variants.max_by(|a, b| statistic(a).total_cmp(&statistic(b)));
+    let projection = best.and_then(|best| Projection::of(table, best));
+    let projection = projection.unwrap_or_else(Projection::none);
     let kept = |effect: &&ScoredEffect| effect.id != named && effects.contains(&&*effect.id);
     let kept: Vec<&ScoredEffect> = table.effects.iter().filter(kept).collect();
     let mut columns: Vec<usize> = kept
@@ -63,9 +58,6 @@ pub(crate) fn given(table: &ScoreTable, named: &str, effects: &[&str]) -> ScoreT
         .collect();
     columns.sort_unstable();
     columns.dedup();
-    let Some(projection) = projection else {
-        return part(table, &kept, &columns);
-    };
     // L⁻¹ of the correlation of the named effect with each column: what is projected out.
     let mut taken = DMatrix::from_fn(projection.columns.len(), columns.len(), |i, j| {
         table.correlation[(projection.columns[i], columns[j])]
@@ -108,33 +100,6 @@ pub(crate) fn given(table: &ScoreTable, named: &str, effects: &[&str]) -> ScoreT
         correlation: DMatrix::from_fn(seen.len(), seen.len(), |i, j| {
             let raw = table.correlation[(columns[seen[i]], columns[seen[j]])];
             (raw - taken_of(i).dot(&taken_of(j))) / (root(i) * root(j))
-        }),
-    }
-}
-
-/// The same scores of some effects alone.
-fn part(table: &ScoreTable, kept: &[&ScoredEffect], columns: &[usize]) -> ScoreTable {
-    let place = |column: &usize| columns.binary_search(column).unwrap_or_default();
-    ScoreTable {
-        effects: kept
-            .iter()
-            .map(|effect| ScoredEffect {
-                variants: effect
-                    .variants
-                    .iter()
-                    .map(|variant| variant.iter().map(place).collect())
-                    .collect(),
-                ..(*effect).clone()
-            })
-            .collect(),
-        in_model: table.in_model.clone(),
-        z: columns.iter().map(|column| table.z[*column]).collect(),
-        root_information: columns
-            .iter()
-            .map(|column| table.root_information[*column])
-            .collect(),
-        correlation: DMatrix::from_fn(columns.len(), columns.len(), |i, j| {
-            table.correlation[(columns[i], columns[j])]
         }),
     }
 }

@@ -22,6 +22,7 @@ use std::collections::BTreeSet;
 
 use gyrocal_hypothesis::ScoreTable;
 
+use crate::answer::RecurringCause;
 use naming::{Naming, Tested};
 
 pub use simulated::{Injected, ScoreSimulator, oracle_finds};
@@ -56,36 +57,9 @@ impl Default for RecurrenceOptions {
     }
 }
 
-/// A cause that recurs.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Discovery {
-    /// Public id of the effect.
-    pub effect: String,
-    /// Logarithm of its evidence E, beside the others that are named.
-    pub ln_e: f64,
-    /// P-value of the evidence; where others are named, the bound 1/E.
-    pub p_value: f64,
-    /// Whether it is a discovery by E alone, whatever depends on whatever.
-    pub by_e_value: bool,
-    /// Share of the units that have it: mean over what the scores allow.
-    pub share: f64,
-    /// Its strength in them, standard deviations of a unit.
-    pub strength: f64,
-    /// Whether one size in all units explains it better than sizes of their own.
-    pub is_common: bool,
-    /// Size in all units with its standard deviation, of an effect with one size that persists.
-    pub size: Option<(f64, f64)>,
-    /// Its unit.
-    pub unit: String,
-    /// Units with the probability that they have it, the likeliest first.
-    pub units: Vec<(String, f64)>,
-    /// Effects that the units' scores do not tell from it, the likeliest first.
-    pub alternatives: Vec<String>,
-}
-
 /// The effects that recur.
 #[must_use]
-pub fn recurring(units: &[UnitRecords<'_>], options: &RecurrenceOptions) -> Vec<Discovery> {
+pub fn recurring(units: &[UnitRecords<'_>], options: &RecurrenceOptions) -> Vec<RecurringCause> {
     let mut tested: Vec<Tested> = effects(units)
         .into_iter()
         .map(|id| Tested::of(units, id, options))

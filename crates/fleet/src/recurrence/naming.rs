@@ -8,7 +8,8 @@ use super::beside::Named;
 use super::mixture::{Evidence, Pooled, ln_mean_exp};
 use super::null::p_value;
 use super::scores::{UnitScores, of_unit};
-use super::{Discovery, RecurrenceOptions, UnitRecords, given};
+use super::{RecurrenceOptions, UnitRecords, given};
+use crate::answer::{LikelyUnit, RecurringCause};
 
 /// Logarithm of the ratio of evidence within which another effect is an alternative: one in twenty.
 const ALTERNATIVE: f64 = 3.0;
@@ -65,7 +66,7 @@ impl Naming<'_> {
     }
 
     /// The effects that recur.
-    pub(super) fn discoveries(&self) -> Vec<Discovery> {
+    pub(super) fn discoveries(&self) -> Vec<RecurringCause> {
         let first = self.limit(1);
         let Some(best) = self.tested.iter().find(|one| one.p_value <= first) else {
             return Vec::new();
@@ -151,7 +152,7 @@ impl Naming<'_> {
         Pooled::of(&scores)
     }
 
-    fn describe(&self, tested: &Tested, all: &[&Tested]) -> Discovery {
+    fn describe(&self, tested: &Tested, all: &[&Tested]) -> RecurringCause {
         let (units, evidence) = (self.units, &tested.evidence);
         let others: Vec<&Tested> = all
             .iter()
@@ -169,25 +170,25 @@ impl Naming<'_> {
         let (share, strength) = evidence.share_and_strength();
         let pooled = self.pooled_beside(tested, &others);
         let pooled = pooled.filter(|pooled| pooled.size.len() == 1);
-        let mut likely: Vec<(String, f64)> = units
-            .iter()
-            .enumerate()
-            .map(|(index, unit)| (unit.unit.to_owned(), evidence.probability(index)))
-            .filter(|(_, probability)| *probability > LIKELY)
-            .collect();
-        likely.sort_by(|a, b| b.1.total_cmp(&a.1));
+        let likely = units.iter().enumerate().map(|(index, unit)| LikelyUnit {
+            unit: unit.unit.to_owned(),
+            probability: evidence.probability(index),
+        });
+        let mut likely: Vec<LikelyUnit> = likely.filter(|one| one.probability > LIKELY).collect();
+        likely.sort_by(|a, b| b.probability.total_cmp(&a.probability));
         let tables = units.iter().flat_map(|unit| &unit.tables);
         let mut effects = tables.flat_map(|table| &table.effects);
         let unit = effects.find(|effect| effect.id == tested.id);
-        Discovery {
+        RecurringCause {
             effect: tested.id.clone(),
-            ln_e,
+            ln_evidence: ln_e,
             p_value,
             by_e_value: exp(-ln_e) <= self.limit(all.len()),
             share,
             strength,
             is_common: evidence.is_common(),
-            size: pooled.map(|pooled| (pooled.size[0], pooled.covariance[(0, 0)].sqrt())),
+            size: pooled.as_ref().map(|pooled| pooled.size[0]),
+            size_sigma: pooled.map(|pooled| pooled.covariance[(0, 0)].sqrt()),
             unit: unit.map_or_else(String::new, |effect| effect.unit.clone()),
             units: likely,
             alternatives: self.alternatives(tested, all),

@@ -4,13 +4,13 @@ use gyrocal::generated::platform::DRIFT;
 use gyrocal_answer::{Answer, CoefficientEstimate, CoefficientShift};
 use gyrocal_calibration::{Estimates as Fitted, FittedPlatform, SiteBias, SiteQuantity};
 use gyrocal_document::{
-    Band, Cell, Chart, Column, EstimateRow, Estimates, Item, Panel, Section, Table, TimeAxis, Tint,
+    Cell, Chart, Column, EstimateRow, Estimates, Item, Panel, Section, Table, TimeAxis, Tint,
 };
 use gyrocal_record::Record;
 
 use super::{accepted, section as titled};
 use crate::error::PageError;
-use crate::panels::{EXTENDED, NOMINAL, line};
+use crate::panels::{EXTENDED, NOMINAL, line, two_sigmas};
 use crate::words::listed;
 
 /// A change of a coefficient from which on it is marked, in claimed sigmas.
@@ -116,15 +116,9 @@ fn add(panel: &mut Panel, (label, tint): (&str, Tint), fitted: &[Option<Fitted>]
             .collect()
     };
     let (estimates, sigmas) = (of(|one| &one.coefficients), of(|one| &one.sigmas));
-    let edge = |sign: f64| {
-        let pairs = estimates.iter().zip(&sigmas);
-        pairs
-            .map(|(estimate, sigma)| estimate + sign * 2.0 * sigma)
-            .collect()
-    };
     let name = format!("{label}, ±2σ");
-    let edges = [edge(-1.0), edge(1.0)];
-    panel.bands.push(Band::new(&name, tint, edges));
+    let pairs = estimates.iter().copied().zip(sigmas);
+    panel.bands.push(two_sigmas(&name, tint, pairs));
     panel.lines.push(line(label, tint, estimates));
 }
 

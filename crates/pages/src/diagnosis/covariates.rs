@@ -1,11 +1,12 @@
 //! Means of what a model leaves, in bins of what it may depend on: specific force, temperature, time.
 
 use gyrocal_diagnosis::{Diagnosis, OpenLoopSimulation, magnitude_channel};
-use gyrocal_document::{Band, Chart, Item, Level, Line, LineKind, Panel, Section, Tint};
+use gyrocal_document::{Chart, Item, Level, Line, LineKind, Panel, Section, Tint};
 use gyrocal_record::{AXES, Record};
 use gyrocal_statistics::{BinMean, BinnedMeans, binned_means};
 
 use super::section;
+use crate::panels::two_sigmas;
 
 /// Bins of a covariate.
 const BINS: usize = 24;
@@ -134,20 +135,16 @@ fn chart(panels: Vec<Panel>) -> Chart {
 
 /// Means of bins over what they are binned by.
 fn panel(name: &str, (covariate, unit): (&str, &str), bins: &[BinMean]) -> Panel {
-    let edge = |sign: f64| {
-        let bins = bins.iter();
-        bins.map(|bin| bin.mean + sign * 2.0 * bin.sigma).collect()
-    };
     let values: usize = bins.iter().map(|bin| bin.values).sum();
     Panel {
         name: name.to_owned(),
         note: format!("{values} rows"),
         own_abscissa: Some((covariate.to_owned(), unit.to_owned())),
         abscissa: bins.iter().map(|bin| bin.at).collect(),
-        bands: vec![Band::new(
+        bands: vec![two_sigmas(
             "±2 standard errors",
             Tint::Nominal,
-            [edge(-1.0), edge(1.0)],
+            bins.iter().map(|bin| (bin.mean, bin.sigma)),
         )],
         lines: vec![Line::new(
             "mean of a bin",

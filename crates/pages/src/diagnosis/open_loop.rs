@@ -72,17 +72,12 @@ fn simulations(
         let name = format!("accelerometer {}", AXES[axis]);
         panels::simulation(name, &time.values, measured, (before[axis].clone(), after))
     });
+    let title = "Specific force, measured and simulated".to_owned();
     Chart {
-        title: "Specific force, measured and simulated".to_owned(),
         caption: "Over days the lines coincide at this scale.".to_owned(),
-        abscissa: "time from the first row".to_owned(),
-        abscissa_unit: time.unit.to_owned(),
         quantity: "specific force".to_owned(),
         unit: "g".to_owned(),
-        panels: panels.collect(),
-        columns: 3,
-        height_px: 240,
-        ..Chart::default()
+        ..panels::over_time(title, time, panels.collect())
     }
 }
 
@@ -123,34 +118,29 @@ fn residuals(
             counted(count, "value")
         ),
     };
+    let title = match extended {
+        Some(run) => format!(
+            "{} rms for the nominal model, {} with {}",
+            micro_g(nominal.rms_g),
+            micro_g(run.rms_g),
+            listed(&of.effects)
+        ),
+        None => format!(
+            "{} rms; accelerometer noise {noise}",
+            micro_g(nominal.rms_g)
+        ),
+    };
     Chart {
-        title: match extended {
-            Some(run) => format!(
-                "{} rms for the nominal model, {} with {}",
-                micro_g(nominal.rms_g),
-                micro_g(run.rms_g),
-                listed(&of.effects)
-            ),
-            None => format!(
-                "{} rms; accelerometer noise {noise}",
-                micro_g(nominal.rms_g)
-            ),
-        },
         caption: format!(
             "The band is of the residual of each row: noise of the accelerometers ({noise} declared), \
              and attitude that the gyros' noise has turned since the first row, less what the fitted \
              coefficients absorb of it.{left_out}"
         ),
-        abscissa: "time from the first row".to_owned(),
-        abscissa_unit: time.unit.to_owned(),
         quantity: "residual".to_owned(),
         unit: "g".to_owned(),
         same_scale: true,
         cut_extremes: true,
-        panels: panels.collect(),
-        columns: 3,
-        height_px: 240,
-        ..Chart::default()
+        ..panels::over_time(title, time, panels.collect())
     }
 }
 

@@ -22,25 +22,28 @@ use crate::ranked;
 pub fn of_plant(diagnosed: &Diagnosed, name: &str, manifest: &Manifest) -> Result<Part, PageError> {
     let answer = &diagnosed.answer;
     let mut sections: Vec<_> = over_time::sections(diagnosed).into();
-    sections.extend(tables::sets(answer));
-    sections.extend(ranked::section(answer));
-    sections.extend(tables::parameters(answer));
-    sections.extend(tables::records(answer));
-    sections.extend(tables::path(answer));
-    sections.extend(tables::gain(answer, Some(diagnosed)));
+    sections.extend(of_tables(answer, Some(diagnosed)));
     sections.push(over_time::innovations(diagnosed)?);
     sections.push(limits::cannot_tell(answer));
     Ok(part(answer, name, manifest, sections))
 }
 
+/// Sets, ranking, parameters, records, left-out parts and gain, those that there are.
+fn of_tables(answer: &Answer, diagnosed: Option<&Diagnosed>) -> impl Iterator<Item = Section> {
+    let all = [
+        tables::sets(answer),
+        ranked::section(answer),
+        tables::parameters(answer),
+        tables::records(answer),
+        tables::path(answer),
+        tables::gain(answer, diagnosed),
+    ];
+    all.into_iter().flatten()
+}
+
 /// The page of a written answer on a plant: all but the charts, for which the record is needed.
 pub(crate) fn of_answer(answer: &Answer) -> Part {
-    let mut sections: Vec<Section> = tables::sets(answer).into_iter().collect();
-    sections.extend(ranked::section(answer));
-    sections.extend(tables::parameters(answer));
-    sections.extend(tables::records(answer));
-    sections.extend(tables::path(answer));
-    sections.extend(tables::gain(answer, None));
+    let mut sections: Vec<Section> = of_tables(answer, None).collect();
     sections.push(over_time::tested(answer, None));
     sections.push(limits::cannot_tell(answer));
     let name = match answer.records.len() {

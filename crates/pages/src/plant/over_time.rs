@@ -14,9 +14,6 @@ use crate::panels;
 /// Lags of the correlation of the innovations.
 const LAGS: usize = 40;
 
-/// Panels in a row, at most.
-const COLUMNS: usize = 3;
-
 /// The two sections over time: simulation against measurement, and their difference.
 pub(super) fn sections(diagnosed: &Diagnosed) -> [Section; 2] {
     let answer = &diagnosed.answer;
@@ -99,7 +96,7 @@ fn simulation(name: &str, series: &RecordSeries) -> Chart {
     Chart {
         caption: "Lines may coincide at this scale.".to_owned(),
         quantity: "output".to_owned(),
-        ..chart(
+        ..panels::over_time(
             of_record(name, "Outputs, measured and simulated"),
             &time,
             series.outputs.iter().map(panel).collect(),
@@ -138,19 +135,7 @@ pub(super) fn residual(title: String, series: &RecordSeries, whole: bool) -> Cha
         caption: "The band has the estimated noise of the sensor, not the declared one.".to_owned(),
         quantity: "residual".to_owned(),
         cut_extremes: true,
-        ..chart(title, &time, series.outputs.iter().map(panel).collect())
-    }
-}
-
-fn chart(title: String, time: &TimeAxis, panels: Vec<Panel>) -> Chart {
-    Chart {
-        title,
-        abscissa: "time from the first row".to_owned(),
-        abscissa_unit: time.unit.to_owned(),
-        columns: panels.len().clamp(1, COLUMNS),
-        panels,
-        height_px: 240,
-        ..Chart::default()
+        ..panels::over_time(title, &time, series.outputs.iter().map(panel).collect())
     }
 }
 
@@ -195,7 +180,7 @@ fn correlations(found: &[OutputCorrelation]) -> Chart {
         panels::correlation(one.output.clone(), note, one.band, lines)
     });
     Chart {
-        columns: found.len().clamp(1, COLUMNS),
+        columns: found.len().clamp(1, panels::COLUMNS),
         ..panels::correlations([nominal, total], extended, panels.collect())
     }
 }

@@ -1,11 +1,11 @@
 //! Charts of a multi-position test.
 
 use gyrocal::generated::catalogue::OUTPUTS;
-use gyrocal_document::{Band, Chart, Line, LineKind, Panel, TimeAxis, Tint};
+use gyrocal_document::{Chart, Line, LineKind, Panel, TimeAxis, Tint};
 use gyrocal_instruments::multi_position::{Finding, GyroReport, MultiPositionReport, PreparedTest};
 use gyrocal_statistics::format;
 
-use crate::panels::{band, line};
+use crate::panels::{band, line, two_sigmas};
 
 /// The drift laws, each with its colour.
 pub(super) const LAWS: [(&str, Tint); 2] = [
@@ -104,11 +104,8 @@ fn contribution(prepared: &PreparedTest, gyro: &GyroReport, finding: &Finding) -
     });
     let mut rows: Vec<[f64; 3]> = rows.collect();
     rows.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    let fitted = |sigmas: f64| -> Vec<f64> {
-        let rows = rows.iter();
-        rows.map(|row| finding.estimate * row[0] + sigmas * row[2])
-            .collect()
-    };
+    let fitted = rows.iter();
+    let fitted = fitted.map(|row| (finding.estimate * row[0], row[2]));
     let rates: Vec<f64> = rows.iter().map(|row| row[1]).collect();
     let [estimate, sigma] = format::estimate(finding.estimate, finding.sigma);
     Panel {
@@ -116,13 +113,13 @@ fn contribution(prepared: &PreparedTest, gyro: &GyroReport, finding: &Finding) -
         note: format!("{estimate} ± {sigma} {}", finding.unit).replace('-', "−"),
         own_abscissa: Some(regressor(finding)),
         abscissa: rows.iter().map(|row| row[0]).collect(),
-        bands: vec![Band::new(
-            ERRORS,
-            Tint::Extended,
-            [fitted(-2.0), fitted(2.0)],
-        )],
+        bands: vec![two_sigmas(ERRORS, Tint::Extended, fitted.clone())],
         lines: vec![
-            line("fitted term", Tint::Extended, fitted(0.0)),
+            line(
+                "fitted term",
+                Tint::Extended,
+                fitted.map(|(rate, sigma)| rate + 0.0 * sigma).collect(),
+            ),
             points(("one static stop", Tint::Measured), &rates),
         ],
         no_gaps: true,

@@ -2,15 +2,12 @@
 
 use gyrocal_record::CalibrationReport;
 
-use super::{JSON, assert_says, bench, record};
-use crate::folder::Folder;
+use super::{JSON, bench, record};
+use crate::folder::{Folder, assert_says};
 
 /// Arguments of one pass, in either form.
-fn one_pass(form: Option<&'static str>) -> Vec<&'static str> {
-    JSON.into_iter()
-        .chain(["--streaming"])
-        .chain(form)
-        .collect()
+fn one_pass(form: &str) -> String {
+    format!("{JSON} --streaming {form}")
 }
 
 #[test]
@@ -20,11 +17,11 @@ fn numbers_that_the_filter_cannot_stand_stop_it_with_advice() {
         ("= 0.002", "= 1e200", "row 2 of the data (t = 60 s)"),
     ] {
         // --factorised is no answer to these, with or without it.
-        for form in [None, Some("--factorised")] {
+        for form in ["", "--factorised"] {
             let folder = Folder::new();
             folder.put("r.csv", record(20));
             folder.put("b.toml", bench().replace(right, wrong));
-            let errors = folder.fail(&one_pass(form));
+            let errors = folder.fail(one_pass(form));
             assert_says(&errors, "r.csv: no calibration\n");
             assert_says(&errors, &format!("the filter stopped at {row}\n"));
             assert_says(
@@ -35,7 +32,7 @@ fn numbers_that_the_filter_cannot_stand_stop_it_with_advice() {
         let folder = Folder::new();
         folder.put("r.csv", record(20));
         folder.put("b.toml", bench().replace(right, wrong));
-        let errors = folder.fail(&JSON);
+        let errors = folder.fail(JSON);
         assert_says(&errors, "r.csv: no calibration\n");
     }
 }
@@ -47,7 +44,7 @@ fn a_gyro_noise_out_of_proportion_is_told() {
     // From 1e-10 on, the linearised cost is rounding error.
     folder.put("b.toml", bench().replace("= 0.002", "= 1e-12"));
     for command in ["calibrate", "diagnose"] {
-        let errors = folder.fail(&[command, "r.csv", "--bench", "b.toml"]);
+        let errors = folder.fail([command, "r.csv", "--bench", "b.toml"]);
         assert_says(&errors, "no shorter step fits");
         assert_says(&errors, "`gyro_deg_per_h` in [noise] is out of proportion");
     }
@@ -59,8 +56,8 @@ fn a_fit_on_a_flat_cost_ends_at_the_values_of_a_larger_noise() {
     folder.put("r.csv", record(200));
     let [coarse, fine] = ["= 1e-7", "= 1e-9"].map(|noise| {
         folder.put("b.toml", bench().replace("= 0.002", noise));
-        folder.succeed(&JSON);
-        let report: CalibrationReport = serde_json::from_str(&folder.text("o.json")).unwrap();
+        folder.succeed(JSON);
+        let report: CalibrationReport = folder.json("o.json");
         report.coefficients
     });
     assert_eq!(coarse.len(), 9);
@@ -77,7 +74,7 @@ fn a_prior_too_wide_for_the_covariance_itself_is_one_for_its_factors() {
     folder.put("r.csv", record(20));
     let prior = "\n[prior]\nbias_sigma_deg_per_h = 1e7\n";
     folder.put("b.toml", bench() + prior);
-    let errors = folder.fail(&one_pass(None));
+    let errors = folder.fail(one_pass(""));
     assert_says(&errors, "the filter stopped at row 2 of the data");
     assert_says(
         &errors,
@@ -89,7 +86,7 @@ fn a_prior_too_wide_for_the_covariance_itself_is_one_for_its_factors() {
     for said in ["the filter stopped", cause] {
         assert_eq!(errors.matches(said).count(), 1, "{errors}");
     }
-    folder.succeed(&one_pass(Some("--factorised")));
+    folder.succeed(one_pass("--factorised"));
 }
 
 #[test]
@@ -103,8 +100,7 @@ fn one_pass_needs_an_attitude() {
         .collect();
     folder.put("b.toml", free.join("\n"));
     for option in ["--streaming", "--paper"] {
-        let arguments: Vec<&str> = JSON.into_iter().chain([option]).collect();
-        let errors = folder.fail(&arguments);
+        let errors = folder.fail(format!("{JSON} {option}"));
         assert_says(&errors, "the bench file gives no initial angles");
         assert_says(&errors, "help: leave out --streaming or --paper");
     }
@@ -118,7 +114,7 @@ fn one_pass_needs_an_attitude() {
         })
         .collect();
     folder.put("r.csv", blank.join("\n"));
-    let errors = folder.fail_writing(&JSON, &["o.json"]);
+    let errors = folder.fail_writing(JSON, &["o.json"]);
     assert_says(
         &errors,
         "The set-up is wrong: r.csv: Accelerometer z has no values.",

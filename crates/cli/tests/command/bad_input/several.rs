@@ -2,8 +2,8 @@
 
 use gyrocal_truth::{Coefficients, InitialAttitude, Scenario};
 
-use super::{JSON, assert_says, bench, record};
-use crate::folder::Folder;
+use super::{JSON, bench, record};
+use crate::folder::{Folder, assert_says};
 
 #[test]
 fn rows_that_two_records_share_are_refused() {
@@ -17,7 +17,7 @@ fn rows_that_two_records_share_are_refused() {
         .collect();
     folder.put("b.csv", later.join("\n"));
     folder.put("b.toml", bench());
-    let errors = folder.fail(&["calibrate", "a.csv", "b.csv", "--bench", "b.toml"]);
+    let errors = folder.fail("calibrate a.csv b.csv --bench b.toml");
     assert_says(
         &errors,
         "b.csv: found 40 consecutive rows that a.csv has too, from row 1 of the data \
@@ -25,7 +25,7 @@ fn rows_that_two_records_share_are_refused() {
     );
     // A copy by another name is the same record.
     folder.put("b.csv", record(100));
-    let errors = folder.fail(&["calibrate", "a.csv", "b.csv", "--bench", "b.toml"]);
+    let errors = folder.fail("calibrate a.csv b.csv --bench b.toml");
     assert_says(
         &errors,
         "b.csv: found 100 consecutive rows that a.csv has too",
@@ -49,7 +49,7 @@ fn the_record_that_fails_is_named_alone_with_advice_of_its_own() {
     folder.put("b.csv", later.join("\n"));
     folder.put("b.toml", bench());
     folder.forget_attitude("b.toml");
-    let errors = folder.fail(&["calibrate", "a.csv", "b.csv", "--bench", "b.toml"]);
+    let errors = folder.fail("calibrate a.csv b.csv --bench b.toml");
     assert_says(&errors, "× b.csv: no calibration");
     assert_says(&errors, "record 2 of 2 cannot be calibrated");
     assert_says(&errors, "the platform cannot be levelled");
@@ -79,21 +79,13 @@ fn bench_files_that_contradict_each_other_are_refused() {
     for (one, other, message) in cases {
         folder.put("b.toml", one);
         folder.put("c.toml", other);
-        let arguments = [
-            "calibrate",
-            "x.csv",
-            "y.csv",
-            "--bench",
-            "b.toml",
-            "--bench",
-            "c.toml",
-        ];
-        let errors = folder.fail(&arguments);
+        let arguments = "calibrate x.csv y.csv --bench b.toml --bench c.toml";
+        let errors = folder.fail(arguments);
         assert_says(&errors, &format!("c.toml: {message}, expected the same"));
     }
     folder.put("b.toml", sigma("0"));
     assert_says(
-        &folder.fail(&JSON),
+        &folder.fail(JSON),
         "b.toml:3:22: found `0`, expected a finite number greater than 0",
     );
 }
@@ -104,17 +96,15 @@ fn a_record_that_is_too_slow_to_average_is_told_so() {
     folder.put("r.csv", record(20));
     folder.put("b.toml", bench());
     for seconds in ["60", "601"] {
-        let arguments: Vec<&str> = JSON.into_iter().chain(["--average", seconds]).collect();
-        let errors = folder.fail(&arguments);
+        let errors = folder.fail(format!("{JSON} --average {seconds}"));
         assert_says(
             &errors,
             &format!("r.csv: means over {seconds} s were asked for, expected from 120 s"),
         );
     }
     // Five means are no calibration.
-    let arguments: Vec<&str> = JSON.into_iter().chain(["--average", "240"]).collect();
     assert_says(
-        &folder.fail(&arguments),
+        &folder.fail(format!("{JSON} --average 240")),
         "the record has 5 rows with a value",
     );
 }
@@ -140,14 +130,7 @@ fn two_platforms() -> Folder {
 }
 
 /// Both records, each with its bench file.
-const BOTH: [&str; 6] = [
-    "a.csv",
-    "b.csv",
-    "--bench",
-    "a.bench.toml",
-    "--bench",
-    "b.bench.toml",
-];
+const BOTH: &str = "a.csv b.csv --bench a.bench.toml --bench b.bench.toml";
 
 #[test]
 fn records_of_several_platforms_are_not_taken_for_those_of_one() {
@@ -159,7 +142,7 @@ fn records_of_several_platforms_are_not_taken_for_those_of_one() {
             .join(" ")
     };
     for command in ["diagnose", "plan"] {
-        let errors = words(&folder.fail(&[&[command], &BOTH[..]].concat()));
+        let errors = words(&folder.fail(format!("{command} {BOTH}")));
         for part in [
             "b.csv: gyro_",
             "differs from that of a.csv by",
@@ -169,7 +152,7 @@ fn records_of_several_platforms_are_not_taken_for_those_of_one() {
             assert_says(&errors, part);
         }
     }
-    let output = folder.run(&[&["calibrate", "--verbose"], &BOTH[..]].concat());
+    let output = folder.run(format!("calibrate --verbose {BOTH}"));
     assert_eq!(output.status.code(), Some(1));
     let said = words(&String::from_utf8(output.stdout).unwrap());
     assert_says(
@@ -189,7 +172,7 @@ bias_sigma_deg_per_h = 3.0
 ";
     folder.put("b.bench.toml", other);
     for command in ["calibrate", "diagnose", "plan"] {
-        let errors = folder.fail(&[&[command], &BOTH[..]].concat());
+        let errors = folder.fail(format!("{command} {BOTH}"));
         assert_says(&errors, "[prior]");
         assert_says(&errors, "help: ");
     }

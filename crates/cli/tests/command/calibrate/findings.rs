@@ -4,7 +4,7 @@ use gyrocal_record::{CalibrationMethod, CalibrationReport, FitVerdict, Record};
 
 use super::{JSON, folder, report, truth, unwrapped};
 use crate::diagnose;
-use crate::folder::{Folder, example};
+use crate::folder::{Folder, assert_says, example};
 
 #[test]
 fn an_azimuth_is_found_near_a_pole_though_gravity_tells_it_slowly() {
@@ -12,26 +12,23 @@ fn an_azimuth_is_found_near_a_pole_though_gravity_tells_it_slowly() {
     let scenario = example("three_days.scenario.toml");
     folder.simulate(&scenario.replace("latitude_deg = 48.2", "latitude_deg = 89.0"));
     folder.forget_attitude("b.toml");
-    let said = unwrapped(&folder.succeed(&["calibrate", "r.csv", "--bench", "b.toml"]));
-    assert!(
-        said.contains("Data, model and declared noise agree."),
-        "{said}"
-    );
-    assert!(said.contains("no other azimuth fits"), "{said}");
-    let said = folder.succeed(&["diagnose", "r.csv", "--bench", "b.toml"]);
+    let said = unwrapped(&folder.succeed("calibrate r.csv --bench b.toml"));
+    assert_says(&said, "Data, model and declared noise agree.");
+    assert_says(&said, "no other azimuth fits");
+    let said = folder.succeed("diagnose r.csv --bench b.toml");
     assert!(said.starts_with("NO FAULT FOUND"), "{said}");
 }
 
 #[test]
 fn the_sigmas_include_a_declared_latitude_sigma_through_its_sensitivity() {
     let folder = folder();
-    folder.succeed(&JSON);
+    folder.succeed(JSON);
     let known = report(&folder);
     let sigma_deg = 0.001;
     let declared = format!("latitude_deg = 48.2\nlatitude_sigma_deg = {sigma_deg}");
     let bench = example("three_days.bench.toml").replace("latitude_deg = 48.2", &declared);
     folder.put("b.toml", bench);
-    let said = unwrapped(&folder.succeed(&JSON));
+    let said = unwrapped(&folder.succeed(JSON));
     let considered = report(&folder);
     let site = &considered.site;
     let latitude = site
@@ -56,23 +53,23 @@ fn the_sigmas_include_a_declared_latitude_sigma_through_its_sensitivity() {
             after.name
         );
     }
-    assert!(said.contains("Latitude is known to 3.600 arcsec"), "{said}");
+    assert_says(&said, "Latitude is known to 3.600 arcsec");
     // Of 3.0 arc seconds.
     let told = latitude.from_record_sigma.unwrap();
     assert!((2.0..4.0).contains(&(3600.0 * told)), "{told}");
-    assert!(said.contains("better than declared"), "{said}");
-    assert!(said.contains("latitude +3.600 arcsec (1 sigma)"), "{said}");
+    assert_says(&said, "better than declared");
+    assert_says(&said, "latitude +3.600 arcsec (1 sigma)");
 }
 
 #[test]
 fn a_bias_of_latitude_is_what_another_latitude_gives() {
     let folder = folder();
-    folder.succeed(&JSON);
+    folder.succeed(JSON);
     let first = report(&folder);
     let error_deg = 2e-4;
     let bench = example("three_days.bench.toml").replace("48.2", &format!("{}", 48.2 - error_deg));
     folder.put("b.toml", bench);
-    folder.succeed(&JSON);
+    folder.succeed(JSON);
     let second = report(&folder);
     let site = &first.site;
     let latitude = site
@@ -98,24 +95,16 @@ fn noise_is_told_beside_the_declared_unless_it_is_not_wanted() {
     let folder = folder();
     let doubled = example("three_days.bench.toml").replace("accel_g = 1e-5", "accel_g = 2e-5");
     folder.put("b.toml", doubled);
-    let said = unwrapped(&folder.succeed(&JSON));
-    assert!(
-        said.contains("The innovations are smaller than the declared noise"),
-        "{said}"
-    );
-    assert!(
-        said.contains("accel_x (smaller), accel_y (smaller)"),
-        "{said}"
-    );
+    let said = unwrapped(&folder.succeed(JSON));
+    assert_says(&said, "The innovations are smaller than the declared noise");
+    assert_says(&said, "accel_x (smaller), accel_y (smaller)");
     let noise = report(&folder).runs[0].noise.unwrap();
     for accel in noise.accel {
         // 4321 samples tell a standard deviation to 1.1 %.
         assert!((0.475..0.525).contains(&accel.ratio), "{accel:?}");
         assert!(accel.interval[0] < accel.ratio && accel.ratio < accel.interval[1]);
     }
-    let mut arguments = JSON.to_vec();
-    arguments.push("--no-noise");
-    let said = folder.succeed(&arguments);
+    let said = folder.succeed(format!("{JSON} --no-noise"));
     assert!(!said.contains("Estimated over declared noise"), "{said}");
     assert_eq!(report(&folder).runs[0].noise, None);
 }
@@ -123,7 +112,7 @@ fn noise_is_told_beside_the_declared_unless_it_is_not_wanted() {
 #[test]
 fn an_attitude_that_is_not_given_is_found() {
     let folder = folder();
-    folder.succeed(&JSON);
+    folder.succeed(JSON);
     let given = report(&folder);
     let bench = example("three_days.bench.toml");
     let free: Vec<&str> = bench
@@ -131,7 +120,7 @@ fn an_attitude_that_is_not_given_is_found() {
         .filter(|line| !line.contains("initial"))
         .collect();
     folder.put("b.toml", free.join("\n"));
-    let said = unwrapped(&folder.succeed(&JSON));
+    let said = unwrapped(&folder.succeed(JSON));
     let found = report(&folder);
     let azimuth = found.runs[0].azimuth.unwrap();
     assert!(azimuth.starts > 1 && !azimuth.ambiguous, "{azimuth:?}");
@@ -152,9 +141,9 @@ fn an_attitude_that_is_not_given_is_found() {
         // Five times the error of 0.01 deg that the scenario drew about these.
         assert!((one - declared).abs() < 0.05, "{one} {declared}");
     }
-    assert!(
-        said.contains("not declared. Levelled by the first samples, azimuth from a search over"),
-        "{said}"
+    assert_says(
+        &said,
+        "not declared. Levelled by the first samples, azimuth from a search over",
     );
 }
 
@@ -178,18 +167,8 @@ fn two_records_are_one_calibration() {
         .filter(|line| !line.contains("initial"))
         .collect();
     folder.put("free.toml", free.join("\n"));
-    let arguments = [
-        "calibrate",
-        "one.csv",
-        "two.csv",
-        "--bench",
-        "b.toml",
-        "--bench",
-        "free.toml",
-        "--json",
-        "o.json",
-    ];
-    let said = folder.succeed(&arguments);
+    let arguments = "calibrate one.csv two.csv --bench b.toml --bench free.toml --json o.json";
+    let said = folder.succeed(arguments);
     let both = report(&folder);
     assert_eq!((both.rows, both.runs.len()), (3000, 2));
     assert_eq!(
@@ -198,11 +177,11 @@ fn two_records_are_one_calibration() {
     );
     assert!(both.runs[0].azimuth.is_none() && both.runs[1].azimuth.is_some());
     assert_eq!(both.verdict, FitVerdict::Consistent);
-    assert!(
-        said.contains("\none.csv: 1500 rows over 1.04 days\n\ntwo.csv: 1500 rows"),
-        "{said}"
+    assert_says(
+        &said,
+        "\none.csv: 1500 rows over 1.04 days\n\ntwo.csv: 1500 rows",
     );
-    assert!(said.contains("first record alone"), "{said}");
+    assert_says(&said, "first record alone");
     // What it proposes is a command that runs.
     let next = said.lines().find(|line| line.contains("gyrocal diagnose"));
     let (next, _) = next.unwrap().split_once("#").unwrap();
@@ -218,14 +197,7 @@ fn two_records_are_one_calibration() {
         // As of the whole record above.
         assert!(error.abs() < 4.0, "{name}: {error} sigmas");
     }
-    folder.succeed(&[
-        "calibrate",
-        "one.csv",
-        "--bench",
-        "b.toml",
-        "--json",
-        "o.json",
-    ]);
+    folder.succeed("calibrate one.csv --bench b.toml --json o.json");
     for (coefficient, sigma) in report(&folder).coefficients.iter().zip(&alone) {
         assert_eq!(coefficient.sigma, *sigma);
     }
@@ -234,7 +206,7 @@ fn two_records_are_one_calibration() {
     let prior = "\n[prior]\nturn_on_sigma_deg_per_h = 0.01\n";
     folder.put("b.toml", bench.clone() + prior);
     folder.put("free.toml", free.join("\n") + prior);
-    let said = folder.succeed(&arguments);
+    let said = folder.succeed(arguments);
     let turned = report(&folder);
     for run in &turned.runs {
         for turn_on in run.turn_on.unwrap() {
@@ -244,9 +216,9 @@ fn two_records_are_one_calibration() {
     }
     // 0.01 deg/h over the root of two turn-ons.
     assert!((turned.coefficients[0].sigma / 7.07e-3 - 1.0).abs() < 0.02);
-    assert!(
-        said.contains("Offsets of the turn-ons from the mean constant drifts"),
-        "{said}"
+    assert_says(
+        &said,
+        "Offsets of the turn-ons from the mean constant drifts",
     );
 }
 
@@ -258,7 +230,7 @@ fn bounded_influence_withstands_outliers() {
         // Ten sigmas, of one sign: a mean would feel it.
         record.accel_g[row][row % 3] += 1e-4;
     }
-    folder.succeed(&JSON);
+    folder.succeed(JSON);
     let clean = report(&folder);
     record.write(&folder.path("r.csv")).unwrap();
     let errors = |report: &CalibrationReport| -> f64 {
@@ -267,11 +239,9 @@ fn bounded_influence_withstands_outliers() {
             .map(|(one, other)| ((one.estimate - other.estimate) / other.sigma).powi(2))
             .sum()
     };
-    folder.succeed(&JSON);
+    folder.succeed(JSON);
     let trusting = report(&folder);
-    let mut arguments = JSON.to_vec();
-    arguments.push("--robust");
-    let said = unwrapped(&folder.succeed(&arguments));
+    let said = unwrapped(&folder.succeed(format!("{JSON} --robust")));
     let robust = report(&folder);
     // A quarter at least; a third of the limit stays of ten sigmas, a ninth in squares.
     assert!(
@@ -283,11 +253,9 @@ fn bounded_influence_withstands_outliers() {
     // 45 outliers and 0.27 % of 12 963 good values.
     let bounded = robust.runs[0].bounded_values;
     assert!((60..110).contains(&bounded), "{bounded}");
-    assert!(
-        said.contains(&format!(
-            "Robust estimation: reduced weight of {bounded} values"
-        )),
-        "{said}"
+    assert_says(
+        &said,
+        &format!("Robust estimation: reduced weight of {bounded} values"),
     );
 }
 
@@ -299,17 +267,13 @@ fn fast_records_are_averaged() {
         .replace("interval_s = 60.0", "interval_s = 5.0")
         .replace("accel_g = 1e-5", "accel_g = 3e-5");
     folder.simulate(&scenario);
-    let mut arguments = JSON.to_vec();
-    arguments.extend(["--average", "60"]);
-    let said = unwrapped(&folder.succeed(&arguments));
+    let said = unwrapped(&folder.succeed(format!("{JSON} --average 60")));
     let report = report(&folder);
     // A last row by itself is no mean.
-    assert!(
-        said.contains(
-            "r.csv: 17281 rows over 1.00 days, averaged over 60 s to 1440 means of 0.289 times the \
-             noise; 3 values left out"
-        ),
-        "{said}"
+    assert_says(
+        &said,
+        "r.csv: 17281 rows over 1.00 days, averaged over 60 s to 1440 means of 0.289 times the \
+             noise; 3 values left out",
     );
     assert_eq!(report.rows, 1440);
     assert_eq!(report.verdict, FitVerdict::Consistent);
@@ -326,23 +290,15 @@ fn fast_records_are_averaged() {
 #[test]
 fn one_pass_of_the_filter_is_there_on_request() {
     let folder = folder();
-    folder.succeed(&JSON);
+    folder.succeed(JSON);
     let batch = report(&folder);
-    for form in [None, Some("--factorised")] {
-        let arguments: Vec<&str> = JSON
-            .into_iter()
-            .chain(["--streaming"])
-            .chain(form)
-            .collect();
-        let said = folder.succeed(&arguments);
+    for form in ["", "--factorised"] {
+        let said = folder.succeed(format!("{JSON} --streaming {form}"));
         let streaming = report(&folder);
         assert_eq!(streaming.method, CalibrationMethod::Streaming);
         assert_eq!(streaming.iterations, 1);
         assert!(streaming.runs.is_empty() && streaming.site.is_empty());
-        assert!(
-            said.contains("The streaming filter takes latitude"),
-            "{said}"
-        );
+        assert_says(&said, "The streaming filter takes latitude");
         for (one, other) in streaming.coefficients.iter().zip(&batch.coefficients) {
             // Linearisation of one pass costs fractions of a sigma.
             assert!(
@@ -359,7 +315,7 @@ fn one_pass_of_the_filter_is_there_on_request() {
 fn what_a_short_record_does_not_determine_is_named() {
     let folder = folder();
     folder.put("r.csv", cut(0, 40));
-    let said = unwrapped(&folder.succeed(&JSON));
+    let said = unwrapped(&folder.succeed(JSON));
     let report = report(&folder);
     assert!(!report.undetermined.is_empty());
     for combination in &report.undetermined {
@@ -372,10 +328,7 @@ fn what_a_short_record_does_not_determine_is_named() {
         // A unit vector, rounded.
         assert!((length - 1.0).abs() < 1e-9 && combination.share_of_prior >= 0.1);
     }
-    assert!(
-        said.contains("Not determined: gyro_x.bias, gyro_x.g_x"),
-        "{said}"
-    );
+    assert_says(&said, "Not determined: gyro_x.bias, gyro_x.g_x");
 }
 
 /// The table of the extended model without a search.
@@ -384,16 +337,10 @@ fn given_effects_are_in_the_model() {
     let folder = Folder::new();
     folder.put("r.csv", example("hidden_fault.csv"));
     folder.put("b.toml", example("hidden_fault.bench.toml"));
-    let with = |effects| {
-        JSON.into_iter()
-            .chain(["--with", effects])
-            .collect::<Vec<_>>()
-    };
-    let said = folder.succeed(&with("gyro_y.g_z"));
-    assert!(
-        said.contains("with gyro_y.g_z") && said.contains("Effects in the model, which gain"),
-        "{said}"
-    );
+    let with = |effects: &str| format!("{JSON} --with {effects}");
+    let said = folder.succeed(with("gyro_y.g_z"));
+    assert_says(&said, "with gyro_y.g_z");
+    assert_says(&said, "Effects in the model, which gain");
     let report = report(&folder);
     let given = report.with_effects.unwrap();
     let [effect] = given.effects.as_slice() else {
@@ -424,7 +371,7 @@ fn given_effects_are_in_the_model() {
         ("gyro_x.noise", "is no effect that a model can have"),
         ("gyro_x.temperature", "the record has no column"),
     ] {
-        let said = unwrapped(&folder.fail(&with(effects)));
+        let said = unwrapped(&folder.fail(with(effects)));
         assert!(said.contains(message), "{effects}: {said}");
     }
 }

@@ -7,7 +7,7 @@ use gyrocal_words::calibration_screen;
 
 use super::{JSON, folder, report, unwrapped};
 use crate::diagnose;
-use crate::folder::{Folder, example};
+use crate::folder::{Folder, assert_says, example};
 
 /// A folder with the record with a hidden fault and its bench description.
 fn hidden_fault() -> Folder {
@@ -20,13 +20,11 @@ fn hidden_fault() -> Folder {
 #[test]
 fn a_fault_that_the_diagnosis_finds_is_told_with_its_probability() {
     let folder = hidden_fault();
-    let said = unwrapped(&folder.succeed(&JSON));
-    assert!(
-        said.contains(
-            "The record shows an effect that the model lacks: the coefficients may be biased. The record shows \
-             gyro_y.g_z ("
-        ),
-        "{said}"
+    let said = unwrapped(&folder.succeed(JSON));
+    assert_says(
+        &said,
+        "The record shows an effect that the model lacks: the coefficients may be biased. The record shows \
+             gyro_y.g_z (",
     );
     assert!(
         !said.contains("data, model and declared noise agree"),
@@ -56,14 +54,14 @@ fn a_fault_that_the_diagnosis_finds_is_told_with_its_probability() {
 #[test]
 fn a_record_that_fits_is_told_as_such_with_what_to_run_next() {
     let folder = folder();
-    let said = unwrapped(&folder.succeed(&JSON));
-    assert!(
-        said.contains("no effect of the catalogue is significant, innovations white."),
-        "{said}"
+    let said = unwrapped(&folder.succeed(JSON));
+    assert_says(
+        &said,
+        "no effect of the catalogue is significant, innovations white.",
     );
-    assert!(
-        said.contains("next gyrocal diagnose r.csv --bench b.toml # all tests"),
-        "{said}"
+    assert_says(
+        &said,
+        "next gyrocal diagnose r.csv --bench b.toml # all tests",
     );
     let mut found = report(&folder);
     assert_eq!(found.verdict, FitVerdict::Consistent);
@@ -85,7 +83,7 @@ fn noise_that_is_declared_too_small_is_no_effect() {
     let bench = example("three_days.bench.toml").replace("deg_per_h = 0.002", "deg_per_h = 0.0008");
     assert_ne!(bench, example("three_days.bench.toml"));
     folder.put("b.toml", bench);
-    folder.succeed(&JSON);
+    folder.succeed(JSON);
     let found = report(&folder);
     assert_eq!(found.verdict, FitVerdict::TooLarge, "{:?}", found.effects);
 }
@@ -96,10 +94,10 @@ fn coefficients_that_mean_nothing_are_not_tabled() {
     // A hundredth of the noise that the record has.
     let bench = example("three_days.bench.toml").replace("accel_g = 1e-5", "accel_g = 1e-7");
     folder.put("b.toml", bench);
-    let output = folder.run(&JSON);
+    let output = folder.run(JSON);
     assert_eq!(output.status.code(), Some(1));
     let said = unwrapped(&String::from_utf8(output.stdout).unwrap());
-    assert!(said.contains("the coefficients are not usable"), "{said}");
+    assert_says(&said, "the coefficients are not usable");
     assert!(
         !said.contains("determine") && !said.contains("gyro_x.bias"),
         "{said}"
@@ -116,7 +114,7 @@ fn calibrated(hidden: &str) -> (String, CalibrationReport) {
         "{}\n{hidden}",
         example("three_days.scenario.toml")
     ));
-    let said = unwrapped(&folder.succeed(&JSON));
+    let said = unwrapped(&folder.succeed(JSON));
     (said, report(&folder))
 }
 
@@ -126,7 +124,7 @@ fn innovations_that_are_not_white_are_not_called_calibrated() {
     let (said, found) =
         calibrated("[[hidden]]\neffect = \"accel_x.tone\"\nsize = 5e-6\nperiod_h = 0.5\n");
     assert_eq!(found.verdict, FitVerdict::Unexplained, "{said}");
-    assert!(said.contains("the innovations are not white"), "{said}");
+    assert_says(&said, "the innovations are not white");
     assert_eq!(found.effects[0].white, Some(false));
     assert!(found.effects[0].causes.is_empty());
 }
@@ -138,8 +136,8 @@ fn noise_that_the_audit_finds_is_told() {
     assert_eq!(found.verdict, FitVerdict::NoiseDiffers, "{said}");
     assert_eq!(found.effects[0].noise, ["accel.coloured_noise"]);
     assert_eq!(found.effects[0].white, Some(true));
-    assert!(said.contains("accel.coloured_noise"), "{said}");
-    assert!(said.contains("No ratio for the gyros"), "{said}");
+    assert_says(&said, "accel.coloured_noise");
+    assert_says(&said, "No ratio for the gyros");
     // One gyro has more noise than declared, which the mean NIS of all channels hardly shows.
     let (said, found) = calibrated("[[hidden]]\neffect = \"gyro_x.noise\"\nratio = 2.0\n");
     assert_eq!(found.effects[0].noise, ["gyro_x.noise"], "{said}");

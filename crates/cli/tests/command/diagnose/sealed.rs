@@ -19,7 +19,7 @@ fn fault(case: &str, seals: &BTreeSet<String>) -> Option<String> {
     let data = repository("tests/data/cases");
     let input = |kind: &str| data.join(format!("{case}.{kind}")).display().to_string();
     let (record, bench) = (input("csv"), input("toml"));
-    folder.succeed(&["diagnose", &record, "--bench", &bench, "--json", "o.json"]);
+    folder.succeed(["diagnose", &record, "--bench", &bench, "--json", "o.json"]);
     let report = super::report(&folder, "o.json");
     let named: Vec<&str> = match report.findings.as_slice() {
         [] => vec!["none"],

@@ -5,7 +5,7 @@ use gyrocal_design::PlanResult;
 use gyrocal_record::{CalibrationReport, FitVerdict};
 
 use super::{BENCH, RECORD, folder, report};
-use crate::folder::Folder;
+use crate::folder::{Folder, assert_says};
 
 const DIAGNOSE: [&str; 6] = ["diagnose", RECORD, "--bench", BENCH, "--json", "o.json"];
 
@@ -30,7 +30,7 @@ fn negate_latitude(folder: &Folder) {
 }
 
 fn stopped(folder: &Folder) -> (String, Answer) {
-    let said = folder.succeed(&DIAGNOSE);
+    let said = folder.succeed(DIAGNOSE);
     let report = report(folder, "o.json");
     assert_eq!(report.verdict, Verdict::Setup);
     assert!(report.coefficients.is_none() && report.findings.is_empty());
@@ -60,33 +60,27 @@ fn a_wrong_latitude_stops_both_commands() {
     let folder = super::folder();
     negate_latitude(&folder);
     let calibrate = ["calibrate", RECORD, "--bench", BENCH, "--json", "c.json"];
-    let errors = folder.fail_writing(&calibrate, &["c.json"]);
-    assert!(
-        errors.contains("The set-up is wrong: hidden_fault.csv: "),
-        "{errors}"
-    );
-    assert!(errors.contains("help: "), "{errors}");
-    let calibration: CalibrationReport = serde_json::from_str(&folder.text("c.json")).unwrap();
+    let errors = folder.fail_writing(calibrate, &["c.json"]);
+    assert_says(&errors, "The set-up is wrong: hidden_fault.csv: ");
+    assert_says(&errors, "help: ");
+    let calibration: CalibrationReport = folder.json("c.json");
     assert_eq!(calibration.verdict, FitVerdict::Setup);
     // Both NIS in both results.
     assert_eq!(calibration.setup, report.setup);
     // A plan is refused as well, with a diagnosis of the record or without.
     let plan = ["plan", RECORD, "--bench", BENCH];
-    let errors = folder.fail(&plan);
-    assert!(
-        errors.contains("the set-up is wrong: hidden_fault.csv: "),
-        "{errors}"
-    );
+    let errors = folder.fail(plan);
+    assert_says(&errors, "the set-up is wrong: hidden_fault.csv: ");
 }
 
 #[test]
 fn a_plan_needs_a_sound_setup_whatever_diagnosis_is_given() {
     let folder = folder();
     negate_latitude(&folder);
-    folder.succeed(&DIAGNOSE);
+    folder.succeed(DIAGNOSE);
     let plan = ["plan", RECORD, "--bench", BENCH, "--diagnosis", "o.json"];
-    let errors = folder.fail(&plan);
-    assert!(errors.contains("the set-up is wrong"), "{errors}");
+    let errors = folder.fail(plan);
+    assert_says(&errors, "the set-up is wrong");
 }
 
 #[test]
@@ -97,14 +91,14 @@ fn a_plan_tells_what_was_mended_and_uses_the_rest() {
             fields[3] = "-999".to_owned();
         }
     });
-    folder.succeed(&DIAGNOSE);
+    folder.succeed(DIAGNOSE);
     for diagnosis in [&["--diagnosis", "o.json"][..], &[]] {
         let plan = [
             "plan", RECORD, "--bench", BENCH, "--hours", "24", "--json", "p.json",
         ];
-        let said = folder.succeed(&[&plan[..], diagnosis].concat());
-        assert!(said.contains("Errors of the set-up:"), "{said}");
-        let plan: PlanResult = serde_json::from_str(&folder.text("p.json")).unwrap();
+        let said = folder.succeed([&plan[..], diagnosis].concat());
+        assert_says(&said, "Errors of the set-up:");
+        let plan: PlanResult = folder.json("p.json");
         assert_eq!(plan.setup, report(&folder, "o.json").setup);
         assert_eq!(plan.now.sizes[0].name, "gyro_y.g_z size");
     }
@@ -119,7 +113,7 @@ fn missing_values_that_are_written_as_numbers_are_left_out_and_told() {
                 fields[3] = code.to_owned();
             }
         });
-        folder.succeed(&DIAGNOSE);
+        folder.succeed(DIAGNOSE);
         let report = report(&folder, "o.json");
         assert_eq!(report.verdict, Verdict::EffectsFound);
         assert_eq!(report.setup.len(), 1);
@@ -130,10 +124,10 @@ fn missing_values_that_are_written_as_numbers_are_left_out_and_told() {
         assert!(!report.setup[0].stops);
         // The fault is still found.
         assert_eq!(report.findings[0].effect, "gyro_y.g_z");
-        let said = folder.succeed(&["calibrate", RECORD, "--bench", BENCH, "--json", "c.json"]);
-        assert!(
-            said.contains("Error of the set-up: hidden_fault.csv:8-4308: Missing values of"),
-            "{said}"
+        let said = folder.succeed(["calibrate", RECORD, "--bench", BENCH, "--json", "c.json"]);
+        assert_says(
+            &said,
+            "Error of the set-up: hidden_fault.csv:8-4308: Missing values of",
         );
         assert!(folder.text("c.json").contains("missing-coded"));
     }
@@ -160,6 +154,6 @@ fn a_record_too_short_for_the_check_is_told_as_too_short() {
     let text = folder.text(RECORD);
     let lines: Vec<&str> = text.lines().take(12).collect();
     folder.put(RECORD, lines.join("\n") + "\n");
-    let errors = folder.fail(&DIAGNOSE);
-    assert!(errors.contains("expected at least 12 rows"), "{errors}");
+    let errors = folder.fail(DIAGNOSE);
+    assert_says(&errors, "expected at least 12 rows");
 }

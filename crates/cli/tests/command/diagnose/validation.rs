@@ -8,10 +8,10 @@ const SCENARIO: &str = "hidden_fault.scenario.toml";
 fn a_later_record_tells_what_the_extended_model_wins() {
     let folder = folder();
     folder.put_example(SCENARIO);
-    folder.succeed(&["simulate", SCENARIO, "--seed", "40", "--out", "later.csv"]);
+    folder.succeed(["simulate", SCENARIO, "--seed", "40", "--out", "later.csv"]);
     let command = ["diagnose", RECORD, "--bench", BENCH, "--json", "o.json"];
     let later = ["--validate", "later.csv", "--validate-bench", BENCH];
-    let said = folder.succeed(&[&command[..], &later].concat());
+    let said = folder.succeed([&command[..], &later].concat());
     let report = report(&folder, "o.json");
     assert_eq!(report.manifest.inputs.len(), 4);
     let finding = &report.findings[0];
@@ -39,14 +39,9 @@ fn a_sound_platform_has_one_model_to_validate() {
     for name in ["three_days.csv", "three_days.bench.toml"] {
         folder.put_example(name);
     }
-    let command = [
-        "diagnose",
-        "three_days.csv",
-        "--bench",
-        "three_days.bench.toml",
-    ];
-    let later = ["--validate", RECORD, "--validate-bench", BENCH];
-    let said = folder.succeed(&[&command[..], &later].concat());
+    let said = folder.succeed(format!(
+        "diagnose three_days.csv --bench three_days.bench.toml --validate {RECORD} --validate-bench {BENCH}"
+    ));
     let expected = "The later record was predicted with the nominal model only: no effect is in";
     assert!(said.replace('\n', " ").contains(expected), "{said}");
 }
