@@ -16,10 +16,7 @@ pub(crate) use gyrocal_truth::plant as simulated;
 use serde::{Deserialize, Serialize};
 
 use self::simulated::{Kind, Run, Setting, Stream, simulate};
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::sources::{PLANTS, of};
-use crate::harness::{Context, Population, Row};
+use crate::harness::{Context, Error, Figure, PLANTS, Population, Row, of};
 
 /// Seeds of clean records, and of starts; no constant was tuned on them.
 const CLEAN: u64 = 610_000;

@@ -9,10 +9,7 @@ use serde::{Deserialize, Serialize};
 use crate::answers::Checked;
 use crate::any_plant::plants;
 use crate::any_plant::simulated::Kind;
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::sources::{DIAGNOSIS, of};
-use crate::harness::{Context, Population, Row};
+use crate::harness::{Context, DIAGNOSIS, Error, Figure, Population, Row, of};
 
 /// Rows of the small version, with one record each: quick ones.
 const SMALL: [&str; 6] = [

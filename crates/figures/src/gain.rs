@@ -8,10 +8,7 @@ use gyrocal_truth::{Hidden, Scenario, simulate};
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::sources::{DIAGNOSIS, of};
-use crate::harness::{Context, Population, Row};
+use crate::harness::{Context, DIAGNOSIS, Error, Figure, Population, Row, of};
 use crate::naming::{CLEAN, WITH_EFFECT, population};
 
 /// First number of these records among the scenarios; the cells have those below.

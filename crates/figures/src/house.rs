@@ -9,9 +9,7 @@ use std::path::Path;
 use gyrocal_evaluation::FieldPopulation;
 use gyrocal_testkit::{snapshot, workspace};
 
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::{Context, pages};
+use crate::harness::{Context, Error, Figure, pages};
 
 /// Packages of the evidence, and their most lines in `src`.
 const EVIDENCE: [&str; 3] = ["evaluation", "figures", "testkit"];

@@ -11,10 +11,7 @@ mod vertical;
 
 use gyrocal_instruments::{Description, InstrumentError};
 
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::sources::{INSTRUMENTS, of};
-use crate::harness::{Context, Population};
+use crate::harness::{Context, Error, Figure, INSTRUMENTS, Population, of};
 
 /// All figures of the part.
 pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {

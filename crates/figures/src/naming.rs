@@ -5,10 +5,7 @@ mod cost;
 
 use gyrocal_evaluation::{BaselineMethod, Measure, PopulationCell, RecordScore, measures};
 
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::sources::{DIAGNOSIS, of};
-use crate::harness::{Context, Population, Row, Seeds};
+use crate::harness::{Context, DIAGNOSIS, Error, Figure, Population, Row, Seeds, of};
 
 /// The cells that usual methods are compared on: without an effect, and with one of eight sigmas of its own bound.
 pub(crate) const CLEAN: PopulationCell = PopulationCell::Clean;

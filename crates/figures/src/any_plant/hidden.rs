@@ -11,8 +11,7 @@ use super::second::{LEAST_GAIN, Second, is_better};
 use super::simulated::{Kind, Setting, Stream, simulate, strength, with_strength};
 use super::{Of, ROWS, in_turn, oracle, prepared};
 use crate::cost::on_one_core;
-use crate::error::Error;
-use crate::harness::{Population, Row};
+use crate::harness::{Error, Population, Row};
 
 #[path = "../../../../examples/duffing/plant.rs"]
 #[rustfmt::skip]

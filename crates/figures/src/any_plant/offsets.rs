@@ -7,9 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::second::{Second, is_better};
 use super::simulated::{Kind, Run, Setting, Stream, simulate, with_strength};
 use super::{Of, ROWS, in_turn, prepared};
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::{Context, Row};
+use crate::harness::{Context, Error, Figure, Row};
 
 /// Seed of the records; no constant was tuned on them.
 const OFFSETS: u64 = 690_000;

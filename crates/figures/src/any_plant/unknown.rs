@@ -6,9 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::hidden::settings;
 use super::simulated::{Kind, Setting, Stream, simulate};
 use super::{Of, ROWS, in_turn, prepared};
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::{Context, Row};
+use crate::harness::{Context, Error, Figure, Row};
 
 /// Seed of the records; no constant was tuned on them.
 const UNKNOWN: u64 = 660_000;

@@ -4,10 +4,9 @@ use gyrocal_truth::Coefficients;
 
 use super::budget_trial::{self, BudgetTrial, SpreadTrial, TrueCoefficients};
 use super::names;
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::sources::{CALIBRATION, Sources, of};
-use crate::harness::{COVERAGE, COVERAGE_REASON, Context, Population, Row};
+use crate::harness::{
+    CALIBRATION, COVERAGE, COVERAGE_REASON, Context, Error, Figure, Population, Row, Sources, of,
+};
 
 const SOURCES: Sources = of(CALIBRATION, &[file!(), budget_trial::FILE]);
 

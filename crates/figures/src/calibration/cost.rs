@@ -5,8 +5,7 @@ use gyrocal_statistics::median;
 use gyrocal_truth::{Coefficients, Scenario, Simulation, simulate};
 
 use crate::cost::{Peak, on_one_core};
-use crate::error::Error;
-use crate::figure::Figure;
+use crate::harness::{Error, Figure};
 
 /// Rows of the same ten days, sampled more and more often, and how often each is calibrated.
 const LENGTHS: [(u32, usize); 3] = [(10_000, 30), (100_000, 3), (1_000_000, 1)];

@@ -13,10 +13,7 @@ use gyrocal_testkit::noise_faults::{Fault, FaultyRecord, faulty_record};
 use gyrocal_truth::{Population as Platforms, Term};
 use serde::{Deserialize, Serialize};
 
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::sources::{DIAGNOSIS, of};
-use crate::harness::{Context, Population, Row};
+use crate::harness::{Context, DIAGNOSIS, Error, Figure, Population, Row, of};
 
 /// Seed of the platforms and their records.
 const PLATFORMS: u64 = 20;

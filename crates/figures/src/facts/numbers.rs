@@ -17,9 +17,7 @@ use super::lines::{Line, of_page};
 use super::values::leading;
 use super::{Answer, PRINTED, answers};
 use crate::before::moves::matches;
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::Context;
+use crate::harness::{Context, Error, Figure};
 use rules::{RULES, SAME};
 
 /// Numbers from the least to the largest.

@@ -16,9 +16,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::fleets;
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::{Context, Row};
+use crate::harness::{Context, Error, Figure, Row};
 
 const UNITS: usize = 200;
 const STRENGTHS: [f64; 3] = [1.0, 2.0, 3.0];

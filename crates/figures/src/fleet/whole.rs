@@ -11,9 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use super::fleets;
 use super::recurring::scenario;
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::Context;
+use crate::harness::{Context, Error, Figure};
 
 /// Share of the units that have the cause, its strength, and the cause.
 const SHARE: f64 = 0.2;

@@ -7,8 +7,7 @@ use gyrocal_codegen::program::MOST_INSTRUCTIONS;
 use gyrocal_codegen::{Header, Program, emit_module};
 
 use crate::cost::Peak;
-use crate::error::Error;
-use crate::figure::Figure;
+use crate::harness::{Error, Figure};
 
 const INSTRUCTIONS: usize = 37_000;
 const MOST_S: f64 = 2.0;

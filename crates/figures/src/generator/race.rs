@@ -13,8 +13,7 @@ use std::process::Command;
 
 use gyrocal_testkit::{Tool, tool};
 
-use crate::error::Error;
-use crate::figure::Figure;
+use crate::harness::{Error, Figure};
 use crate::kernel::instructions::{instructions, output};
 
 const COMPETITORS: [&str; 3] = ["wrenfold", "symforce", "casadi"];

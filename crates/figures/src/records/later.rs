@@ -11,11 +11,8 @@ use gyrocal_truth::{Scenario, simulate};
 use serde::{Deserialize, Serialize};
 
 use super::continued;
-use crate::error::Error;
-use crate::figure::Figure;
 use crate::gain::FIRST_NUMBER;
-use crate::harness::sources::{DIAGNOSIS, of};
-use crate::harness::{Context, Population, Row};
+use crate::harness::{Context, DIAGNOSIS, Error, Figure, Population, Row, of};
 
 /// Least strength of the effect, in sigmas of its own bound; the largest is four times that.
 const LEAST_STRENGTH: f64 = 12.0;

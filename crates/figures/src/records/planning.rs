@@ -9,10 +9,7 @@ use gyrocal_truth::{InitialAttitude, Population as Platforms, Scenario, Simulati
 use serde::{Deserialize, Serialize};
 
 use super::continued;
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::sources::{DIAGNOSIS, of};
-use crate::harness::{Context, Population, Row};
+use crate::harness::{Context, DIAGNOSIS, Error, Figure, Population, Row, of};
 
 /// Seed of the platforms and their records.
 const PLATFORMS: u64 = 78;

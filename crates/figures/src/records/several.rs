@@ -11,10 +11,7 @@ use gyrocal_truth::{Coefficients, InitialAttitude, Scenario, Simulation, simulat
 use serde::{Deserialize, Serialize};
 
 use super::oracle;
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::sources::{DIAGNOSIS, of};
-use crate::harness::{Context, Population, Row};
+use crate::harness::{Context, DIAGNOSIS, Error, Figure, Population, Row, of};
 
 /// File of the oracle.
 const ORACLE: &str = "crates/figures/src/records/oracle.rs";

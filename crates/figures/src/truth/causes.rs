@@ -19,11 +19,7 @@ use serde::{Deserialize, Serialize};
 
 use super::drawn::{self, noisy};
 use super::judged::{self, coefficient_rows, coefficients, diagnosed, may_walk};
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::sources::Sources;
-use crate::harness::sources::{DIAGNOSIS, of};
-use crate::harness::{Context, Population, Row};
+use crate::harness::{Context, DIAGNOSIS, Error, Figure, Population, Row, Sources, of};
 
 use Causes::{All, Of, Slow};
 use EffectKind::{Exponential, InitialState, Periodic, Ramp, Regressor, StateJump, Step};

@@ -11,11 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use super::drawn;
 use crate::cost::on_one_core;
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::sources::Sources;
-use crate::harness::sources::of;
-use crate::harness::{Context, Population, Row};
+use crate::harness::{Context, Error, Figure, Population, Row, Sources, of};
 use records::{FEW_ROWS, ROWS, record, sound};
 
 const SOURCES: Sources = of(

@@ -9,8 +9,7 @@ use gyrocal_record::AXES;
 use gyrocal_statistics::{NORMAL_97_5, Proportion};
 use gyrocal_truth::Simulation;
 
-use crate::error::Error;
-use crate::harness::Row;
+use crate::harness::{Error, Row};
 
 /// This file, as a source of populations.
 pub(super) const FILE: &str = file!();

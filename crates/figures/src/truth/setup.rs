@@ -13,11 +13,7 @@ use gyrocal_truth::{InitialAttitude, Scenario, Simulation, simulate};
 use serde::{Deserialize, Serialize};
 
 use super::drawn::{self, coefficients};
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::sources::Sources;
-use crate::harness::sources::of;
-use crate::harness::{Context, Population, Row};
+use crate::harness::{Context, Error, Figure, Population, Row, Sources, of};
 
 const SOURCES: Sources = of(
     &["crates/diagnosis", "crates/evaluation"],

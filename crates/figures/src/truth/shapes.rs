@@ -11,11 +11,9 @@ use serde::{Deserialize, Serialize};
 
 use super::drawn::{self, noisy};
 use super::judged::{self, diagnosed, within};
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::sources::Sources;
-use crate::harness::sources::{DIAGNOSIS, of};
-use crate::harness::{COVERAGE, COVERAGE_REASON, Context, Population, Row};
+use crate::harness::{
+    COVERAGE, COVERAGE_REASON, Context, DIAGNOSIS, Error, Figure, Population, Row, Sources, of,
+};
 
 /// What can move the records.
 const SOURCES: Sources = of(DIAGNOSIS, &[file!(), drawn::FILE, judged::FILE]);

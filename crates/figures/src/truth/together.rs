@@ -8,11 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::drawn::{self, misdeclare, plain, walk};
 use super::judged::{self, coefficient_rows, coefficients, diagnosed, surely_not_walks};
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::sources::Sources;
-use crate::harness::sources::{DIAGNOSIS, of};
-use crate::harness::{Context, Population, Row};
+use crate::harness::{Context, DIAGNOSIS, Error, Figure, Population, Row, Sources, of};
 
 /// What can move the records.
 const SOURCES: Sources = of(DIAGNOSIS, &[file!(), drawn::FILE, judged::FILE]);
