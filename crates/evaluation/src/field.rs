@@ -14,8 +14,10 @@ mod records;
 mod right;
 
 use gyrocal_answer::Answer;
-use gyrocal_calibration::{Options, Run};
-use gyrocal_diagnosis::{DiagnoseOptions, Gate, RecordToDiagnose, diagnose, diagnose_together};
+use gyrocal_calibration::Run;
+use gyrocal_diagnosis::{
+    DiagnoseOptions, Diagnosis, DiagnosisError, Gate, RecordToDiagnose, diagnose, diagnose_together,
+};
 use gyrocal_plant::LoadedPlant;
 use gyrocal_record::{Bench, Record};
 use gyrocal_setup::PlatformKind;
@@ -170,20 +172,27 @@ fn outcome(right: &Right, axis: Option<usize>, faint: bool, told: Told) -> Judge
 
 /// The diagnosis of a record, or of several together.
 fn told(records: &[(Record, Bench)]) -> Told {
-    let options = DiagnoseOptions::default();
     if let [(record, bench)] = records {
-        return Told::of(diagnose(record, bench, &options).map(|found| found.result));
+        let found = diagnose(record, bench, &DiagnoseOptions::default());
+        return Told::of(found.map(|found| found.result));
     }
-    let named = (1..).zip(records).map(|(number, (record, bench))| {
-        let run = Run { record, bench };
-        RecordToDiagnose {
-            name: format!("record {number}"),
-            gate: Gate::new(PlatformKind::Stabilised, &run, &Options::default()),
-            bench,
-        }
-    });
-    let together = diagnose_together(named.collect(), &options, |_| ());
+    let runs = records.iter().map(|(record, bench)| Run { record, bench });
+    let together = diagnosed_together(&runs.collect::<Vec<_>>());
     Told::of(together.map(|found| found.result))
+}
+
+/// The diagnosis of several runs of one platform together by default options.
+///
+/// # Errors
+/// As [`diagnose_together`].
+pub fn diagnosed_together(runs: &[Run<'_>]) -> Result<Diagnosis<'static>, DiagnosisError> {
+    let options = DiagnoseOptions::default();
+    let named = (1..).zip(runs).map(|(number, run)| RecordToDiagnose {
+        name: format!("record {number}"),
+        gate: Gate::new(PlatformKind::Stabilised, run, &options.calibration),
+        bench: run.bench,
+    });
+    diagnose_together(named.collect(), &options, |_| ())
 }
 
 #[cfg(test)]

@@ -110,10 +110,10 @@ pub use comparison::{Answer, ComparisonRow, OWN_METHOD, comparison};
 pub use effect_family::{FamilyRow, families};
 pub use error::EvaluationError;
 #[cfg(feature = "field")]
-pub use field::{FieldOutcome, FieldPopulation, Judgement};
+pub use field::{FieldOutcome, FieldPopulation, Judgement, diagnosed_together};
 pub use injection::{
-    InjectedEffect, draw_shape, inject, inject_any, inject_into, inject_one_of, nominal_fit,
-    run_of, testable_effects,
+    InjectedEffect, diagnosed, draw_shape, inject, inject_any, inject_into, inject_one_of,
+    nominal_fit, run_of, testable_effects,
 };
 pub use oracle::sets_without_walks;
 pub use out_of_catalogue::UnlistedRecord;

@@ -64,33 +64,21 @@ pub(crate) fn loaded(kind: Kind) -> Result<LoadedPlant, PlantError> {
     LoadedPlant::read(std::path::Path::new(&file))
 }
 
-/// A population of records of some plants in turn: `first`, `full` and `small` are of each of them.
+/// A population of records of some plants in turn: seeds and numbers are of each of them.
 fn in_turn<'a, T>(
     name: &str,
     kinds: &'a [Kind],
-    [first, full, small]: [u64; 3],
+    seeds: [u64; 3],
     job: impl Fn(Kind, u64) -> Result<T, Error> + Sync + 'a,
 ) -> Population<'a, Of<T>> {
+    const FILES: &[&str] = &[file!(), "crates/figures/src/any_plant", "examples"];
     let count = kinds.len() as u64;
-    Population {
-        name: format!("any plant, {name}"),
-        first: count * first,
-        full: count * full,
-        small: count * small,
-        sources: of(
-            PLANTS,
-            &[
-                "crates/figures/src/any_plant.rs",
-                "crates/figures/src/any_plant",
-                "examples",
-            ],
-        ),
-        job: Box::new(move |seed| {
-            let kind = kinds[(seed % count) as usize];
-            let (plant, found) = (kind as usize, job(kind, seed / count)?);
-            Ok(Of { plant, found })
-        }),
-    }
+    let (name, seeds) = (format!("any plant, {name}"), seeds.map(|one| count * one));
+    Population::new(name, seeds, of(PLANTS, FILES), move |seed| {
+        let kind = kinds[(seed % count) as usize];
+        let (plant, found) = (kind as usize, job(kind, seed / count)?);
+        Ok(Of { plant, found })
+    })
 }
 
 fn prepared(plant: &LoadedPlant, run: Run) -> Result<PlantRecord, PlantError> {

@@ -160,25 +160,20 @@ fn populations(servo: &LoadedPlant) -> Vec<Population<'_, Fielded>> {
 }
 
 fn population(row: FieldPopulation<'_>) -> Population<'_, Fielded> {
-    let job = row.job;
-    Population {
-        small: match row.records {
-            EACH => u64::from(SMALL.contains(&&*row.name)),
-            _ => SHORT,
-        },
-        name: format!("field {}", row.name),
-        first: row.first_seed,
-        full: row.records,
-        sources: of(
-            DIAGNOSIS,
-            &[file!(), "crates/figures/src/answers.rs", "examples/servo"],
-        ),
-        job: Box::new(move |seed| {
-            let (outcome, answer) = job(seed)?;
-            let answer = answer.as_ref().map(Checked::of).transpose()?;
-            Ok(Fielded { outcome, answer })
-        }),
-    }
+    const FILES: &[&str] = &[file!(), "crates/figures/src/answers.rs", "examples/servo"];
+    let small = match row.records {
+        EACH => u64::from(SMALL.contains(&&*row.name)),
+        _ => SHORT,
+    };
+    let (name, seeds) = (
+        format!("field {}", row.name),
+        [row.first_seed, row.records, small],
+    );
+    Population::new(name, seeds, of(DIAGNOSIS, FILES), move |seed| {
+        let (outcome, answer) = (row.job)(seed)?;
+        let answer = answer.as_ref().map(Checked::of).transpose()?;
+        Ok(Fielded { outcome, answer })
+    })
 }
 
 /// Numbers of records by judgement, and the median of their strengths.

@@ -1,6 +1,6 @@
 //! Time and memory of a diagnosis, and its reproducibility.
 
-use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
+use gyrocal_evaluation::diagnosed;
 use gyrocal_truth::{Coefficients, Hidden, Scenario, Simulation, simulate};
 
 use super::Error;
@@ -52,9 +52,7 @@ fn simulation(interval_s: f64) -> Result<Simulation, Error> {
 
 /// All numbers of a diagnosis, and its time, s.
 fn told(simulation: &Simulation) -> Result<(String, f64), Error> {
-    let options = DiagnoseOptions::default();
-    let (found, seconds) =
-        on_one_core(|| diagnose(&simulation.record, &simulation.bench, &options));
+    let (found, seconds) = on_one_core(|| diagnosed(simulation));
     let found = found?;
     // Numbers are written with as many digits as tell them from all others.
     let all = format!("{:?}", (&found.result, found.nominal.values()));

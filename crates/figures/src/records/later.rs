@@ -3,8 +3,8 @@
 use gyrocal::effect::Enters;
 use gyrocal_calibration::FittedPlatform;
 use gyrocal_design::NamedCause;
-use gyrocal_diagnosis::{DiagnoseOptions, diagnose, predict_later};
-use gyrocal_evaluation::{effect_of, inject_any, run_of, scenario};
+use gyrocal_diagnosis::{DiagnoseOptions, predict_later};
+use gyrocal_evaluation::{diagnosed, effect_of, inject_any, run_of, scenario};
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_statistics::{Proportion, median};
 use gyrocal_truth::{Scenario, simulate};
@@ -67,14 +67,8 @@ impl Second {
 
 /// All figures of the part.
 pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
-    let population = Population {
-        name: "second".to_owned(),
-        first: 900_000,
-        full: 1000,
-        small: 10,
-        sources: of(DIAGNOSIS, &[file!(), "crates/figures/src/gain.rs"]),
-        job: Box::new(second),
-    };
+    let sources = of(DIAGNOSIS, &[file!(), "crates/figures/src/gain.rs"]);
+    let population = Population::new("second", [900_000, 1000, 10], sources, second);
     context.measure(&population, &rows())
 }
 
@@ -144,7 +138,7 @@ fn second(seed: u64) -> Result<Second, Error> {
     let (scenario, injected) = inject_any(scenario(number), strength, &mut Draw::new(number, 0))?;
     let first = simulate(&scenario)?;
     let options = DiagnoseOptions::default();
-    let found = diagnose(&first.record, &first.bench, &options)?;
+    let found = diagnosed(&first)?;
     let later = simulate(&Scenario {
         seed: scenario.seed ^ LATER_SEED,
         start_s: scenario.start_s + LATER_S,

@@ -3,8 +3,7 @@
 mod records;
 
 use gyrocal_calibration::work;
-use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
-use gyrocal_evaluation::Statistic;
+use gyrocal_evaluation::{Statistic, diagnosed};
 use gyrocal_statistics::median;
 use gyrocal_truth::Simulation;
 use serde::{Deserialize, Serialize};
@@ -30,8 +29,7 @@ struct Cost {
 
 fn cost(kind: &str, simulation: &Simulation) -> Cost {
     let before = work();
-    let options = DiagnoseOptions::default();
-    let (_, seconds) = on_one_core(|| diagnose(&simulation.record, &simulation.bench, &options));
+    let (_, seconds) = on_one_core(|| diagnosed(simulation));
     Cost {
         kind: kind.to_owned(),
         rows: simulation.record.len(),

@@ -3,6 +3,7 @@
 
 use gyrocal_answer::Answer;
 use gyrocal_calibration::NoiseModel;
+use gyrocal_evaluation::diagnosed;
 use gyrocal_record::AXES;
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::faults::noise::{flickering, student, with_noise};
@@ -10,7 +11,7 @@ use gyrocal_truth::{Hidden, simulate};
 use serde::{Deserialize, Serialize};
 
 use super::drawn::{self, misdeclare, plain, walk};
-use super::judged::{self, diagnosed, surely_not_walks, within};
+use super::judged::{self, surely_not_walks, within};
 use crate::harness::{
     COVERAGE, COVERAGE_REASON, Context, DIAGNOSIS, Error, Figure, Population, Row, Sources, of,
 };

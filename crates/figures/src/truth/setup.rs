@@ -3,8 +3,8 @@
 use std::time::Instant;
 
 use gyrocal_calibration::Options;
-use gyrocal_diagnosis::{DiagnoseOptions, DiagnosisError, Gate, diagnose};
-use gyrocal_evaluation::{Statistic, inject_any, run_of};
+use gyrocal_diagnosis::{DiagnosisError, Gate};
+use gyrocal_evaluation::{Statistic, diagnosed, inject_any, run_of};
 use gyrocal_setup::{PlatformKind, check_setup};
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_statistics::{Proportion, median};
@@ -222,9 +222,7 @@ fn time(small: bool) -> Result<Vec<Figure>, Error> {
     let mut is_told = true;
     let slowest = [reversed, without].map(|simulation| {
         timed_ms(|| {
-            let options = DiagnoseOptions::default();
-            let found = diagnose(&simulation.record, &simulation.bench, &options);
-            is_told &= matches!(found, Err(DiagnosisError::Setup { .. }));
+            is_told &= matches!(diagnosed(&simulation), Err(DiagnosisError::Setup { .. }));
         })
     });
     let name = |what: &str| format!("time of the gate at {rows} rows, {what}");

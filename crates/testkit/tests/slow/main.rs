@@ -4,6 +4,9 @@
 mod check;
 mod environment;
 mod failures;
+mod own_terms;
+mod places;
+mod tiny;
 mod variants;
 mod workspace;
 
