@@ -80,7 +80,6 @@ mod characterise_report;
 mod characteristic;
 mod coefficient_score;
 mod comparison;
-mod effect_family;
 mod error;
 #[cfg(feature = "field")]
 mod field;
@@ -106,8 +105,7 @@ pub use cell_characteristics::{characteristics, measures};
 pub use characterise_report::{CellReport, CharacteriseReport, cell_campaign, cell_report};
 pub use characteristic::{Characteristic, Measure};
 pub use coefficient_score::CoefficientScore;
-pub use comparison::{Answer, ComparisonRow, OWN_METHOD, comparison};
-pub use effect_family::{FamilyRow, families};
+pub use comparison::{Answer, ComparisonRow, FamilyRow, OWN_METHOD, comparison, families};
 pub use error::EvaluationError;
 #[cfg(feature = "field")]
 pub use field::{FieldOutcome, FieldPopulation, Judgement, diagnosed_together};

@@ -2,7 +2,6 @@
 
 mod attitudes;
 pub(crate) mod budget;
-mod budget_trial;
 mod cost;
 
 use gyrocal_calibration::Options;

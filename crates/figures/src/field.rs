@@ -41,12 +41,12 @@ const JUDGEMENTS: [(Judgement, &str); 4] = [
 
 /// All figures of the part `field` of the diagnosis.
 pub(crate) fn of_records(context: &Context) -> Result<Vec<Figure>, Error> {
-    let keys = FieldPopulation::wrong_keys();
+    let keys = FieldPopulation::wrong_keys()?;
     let mut figures = table(context, "wrong bench keys", keys)?;
     figures.extend(table(
         context,
         "records of users",
-        FieldPopulation::kinds(),
+        FieldPopulation::kinds()?,
     )?);
     Ok(figures)
 }
@@ -54,7 +54,7 @@ pub(crate) fn of_records(context: &Context) -> Result<Vec<Figure>, Error> {
 /// All figures of the part `field` of the plants.
 pub(crate) fn of_plants(context: &Context) -> Result<Vec<Figure>, Error> {
     let plants = plants()?;
-    let kinds = FieldPopulation::plants(&plants[Kind::Servo as usize]);
+    let kinds = FieldPopulation::plants(&plants[Kind::Servo as usize])?;
     table(context, "records of a user's plant", kinds)
 }
 
@@ -65,7 +65,7 @@ pub(crate) fn of_plants(context: &Context) -> Result<Vec<Figure>, Error> {
 pub(crate) fn of_answers(context: &Context) -> Result<Vec<Figure>, Error> {
     let plants = plants()?;
     let (mut all, mut is_full) = (Vec::new(), true);
-    for population in populations(&plants[Kind::Servo as usize]) {
+    for population in populations(&plants[Kind::Servo as usize])? {
         let records = context.records(&population)?;
         is_full &= records.full;
         let answers = records.records.iter().filter_map(|one| one.answer.clone());
@@ -151,12 +151,12 @@ struct Fielded {
 }
 
 /// All populations: records of the platform, then of the servo.
-fn populations(servo: &LoadedPlant) -> Vec<Population<'_, Fielded>> {
-    let rows = FieldPopulation::wrong_keys().into_iter();
-    let rows = rows.chain(FieldPopulation::kinds());
+fn populations(servo: &LoadedPlant) -> Result<Vec<Population<'_, Fielded>>, Error> {
+    let rows = FieldPopulation::wrong_keys()?.into_iter();
+    let rows = rows.chain(FieldPopulation::kinds()?);
     let rows = rows.chain([FieldPopulation::short()]);
-    let rows = rows.chain(FieldPopulation::plants(servo));
-    rows.map(population).collect()
+    let rows = rows.chain(FieldPopulation::plants(servo)?);
+    Ok(rows.map(population).collect())
 }
 
 fn population(row: FieldPopulation<'_>) -> Population<'_, Fielded> {
@@ -199,9 +199,9 @@ mod tests {
     fn rows_of_the_small_version_are_rows() {
         let plants = plants().unwrap();
         let all = [
-            FieldPopulation::wrong_keys(),
-            FieldPopulation::kinds(),
-            FieldPopulation::plants(&plants[Kind::Servo as usize]),
+            FieldPopulation::wrong_keys().unwrap(),
+            FieldPopulation::kinds().unwrap(),
+            FieldPopulation::plants(&plants[Kind::Servo as usize]).unwrap(),
         ];
         let names: Vec<String> = all.into_iter().flatten().map(|one| one.name).collect();
         for small in SMALL {

@@ -3,9 +3,8 @@
 use gyrocal_evaluation::diagnosed;
 use gyrocal_truth::{Coefficients, Hidden, Scenario, Simulation, simulate};
 
-use super::Error;
 use crate::cost::{Peak, on_one_core};
-use crate::figure::Figure;
+use crate::harness::{Error, Figure};
 
 /// Largest time for three days sampled each minute, and each second, s; largest memory of the process, MB.
 const MINUTES_S: f64 = 1.0;
