@@ -2,6 +2,16 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+/// Makes `directory` anew, empty.
+pub fn fresh_directory(directory: impl Into<PathBuf>) -> PathBuf {
+    let directory = directory.into();
+    if directory.exists() {
+        fs::remove_dir_all(&directory).unwrap();
+    }
+    fs::create_dir_all(&directory).unwrap();
+    directory
+}
+
 /// Replaces the one occurrence of `from` in a file.
 pub fn edit(path: impl AsRef<Path>, from: &str, to: &str) {
     let path = path.as_ref();
@@ -31,4 +41,15 @@ pub fn snapshot(directory: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
         }
     }
     found
+}
+
+/// Writes an executable shell script.
+pub fn executable(path: &Path, script: &str) {
+    fs::create_dir_all(path.parent().unwrap()).unwrap();
+    fs::write(path, format!("#!/bin/sh\n{script}\n")).unwrap();
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        fs::set_permissions(path, fs::Permissions::from_mode(0o755)).unwrap();
+    }
 }

@@ -49,5 +49,5 @@ mod tools;
 
 pub use command::{Outcome, cargo, codegen, python_with, real_environments, run, system_python};
 pub use copy::{WorkspaceCopy, workspace};
-pub use files::{edit, snapshot};
+pub use files::{edit, executable, fresh_directory, snapshot};
 pub use tools::{Tool, leave_out, programs, tool};

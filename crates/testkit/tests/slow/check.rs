@@ -4,10 +4,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use gyrocal_codegen::build::Derivation;
-use gyrocal_testkit::{codegen, edit, run, snapshot, workspace};
+use gyrocal_testkit::{codegen, edit, fresh_directory, run, snapshot, workspace};
 
 use crate::SCRATCH;
-use crate::places::fresh_directory;
 use crate::tiny::TinyDerivation;
 
 #[test]

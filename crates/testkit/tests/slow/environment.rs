@@ -3,10 +3,9 @@
 use std::fs;
 use std::path::Path;
 
-use gyrocal_testkit::{codegen, real_environments, run, snapshot, system_python};
+use gyrocal_testkit::{codegen, fresh_directory, real_environments, run, snapshot, system_python};
 
 use crate::SCRATCH;
-use crate::places::fresh_directory;
 use crate::tiny::TinyDerivation;
 
 fn entries(directory: &Path) -> Vec<String> {

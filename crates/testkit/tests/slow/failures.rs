@@ -4,10 +4,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use gyrocal_testkit::{Outcome, WorkspaceCopy, codegen, edit, run, snapshot, system_python};
+use gyrocal_testkit::{
+    Outcome, WorkspaceCopy, codegen, edit, executable, fresh_directory, run, snapshot,
+    system_python,
+};
 
 use crate::SCRATCH;
-use crate::places::{executable, fresh_directory};
 use crate::tiny::TinyDerivation;
 
 /// A tiny derivation, and an empty directory for environments.

@@ -4,8 +4,8 @@
 mod check;
 mod environment;
 mod failures;
+mod no_python;
 mod own_terms;
-mod places;
 mod tiny;
 mod variants;
 mod workspace;

@@ -3,9 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use gyrocal_testkit::workspace;
-
-use crate::places::fresh_directory;
+use gyrocal_testkit::{fresh_directory, workspace};
 
 /// A derivation of one function, with the workspace's lock file (so with its environment).
 pub(crate) struct TinyDerivation {

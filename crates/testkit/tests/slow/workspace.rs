@@ -5,11 +5,13 @@ use std::process::Command;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use gyrocal_codegen::build::{Settings, Variant};
-use gyrocal_testkit::{Outcome, WorkspaceCopy, cargo, real_environments, run, snapshot};
+use gyrocal_testkit::{
+    Outcome, WorkspaceCopy, cargo, fresh_directory, real_environments, run, snapshot,
+};
 
 use crate::SCRATCH;
+use crate::no_python::tools_only;
 use crate::own_terms::{add_own_terms, add_probe, add_program, code_block, find_own_terms};
-use crate::places::{fresh_directory, tools_only};
 
 /// Prints the rates of drift by the squares of specific force alone, each with its
 /// derivatives by the coefficients.

@@ -1,20 +1,9 @@
-//! Directories and programs that tests make.
+//! A machine that lacks Python.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use gyrocal_testkit::{programs, run};
-
-/// Makes `directory` anew, empty.
-pub(crate) fn fresh_directory(directory: impl Into<PathBuf>) -> PathBuf {
-    let directory = directory.into();
-    if directory.exists() {
-        fs::remove_dir_all(&directory).unwrap();
-    }
-    fs::create_dir_all(&directory).unwrap();
-    directory
-}
+use gyrocal_testkit::{fresh_directory, programs, run};
 
 /// A directory for `PATH` that has cargo, the compiler and a linker, and no Python.
 pub(crate) fn tools_only(directory: PathBuf) -> PathBuf {
@@ -33,17 +22,6 @@ pub(crate) fn tools_only(directory: PathBuf) -> PathBuf {
         link(first, &directory.join(name));
     }
     directory
-}
-
-/// Writes an executable shell script.
-pub(crate) fn executable(path: &Path, script: &str) {
-    fs::create_dir_all(path.parent().unwrap()).unwrap();
-    fs::write(path, format!("#!/bin/sh\n{script}\n")).unwrap();
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        fs::set_permissions(path, fs::Permissions::from_mode(0o755)).unwrap();
-    }
 }
 
 fn link(original: &Path, link: &Path) {
