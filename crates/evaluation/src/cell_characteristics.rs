@@ -10,7 +10,7 @@ use gyrocal_statistics::{NORMAL_97_5, Proportion, normal_probability, normal_qua
 use crate::campaign::Outcome;
 use crate::catalogue::effect_of;
 use crate::characteristic::{Characteristic, Measure};
-use crate::effect_family::{FamilyRow, families};
+use crate::comparison::{FamilyRow, families};
 use crate::population::PopulationCell;
 use crate::record_score::{RecordScore, SAME_CLASS_COSINE};
 use crate::statistic::{Statistic, Target};

@@ -11,8 +11,7 @@ use crate::baseline::BaselineMethod;
 use crate::campaign::{Campaign, Failure, Fingerprint, Outcome, program};
 use crate::cell_characteristics::characteristics;
 use crate::characteristic::Characteristic;
-use crate::comparison::{ComparisonRow, comparison};
-use crate::effect_family::{FamilyRow, families};
+use crate::comparison::{ComparisonRow, FamilyRow, comparison, families};
 use crate::population::PopulationCell;
 use crate::record_score::RecordScore;
 

@@ -108,6 +108,12 @@ pub enum EvaluationError {
         /// The kind.
         kind: EffectKind,
     },
+    /// The table of right answers cannot be read, or lacks one.
+    #[error("the table of right answers: {reason}")]
+    RightAnswers {
+        /// The error in it.
+        reason: String,
+    },
     /// A name that no cell has.
     #[error("found the cell `{name}`, expected one of {known}")]
     UnknownCell {

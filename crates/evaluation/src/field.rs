@@ -14,8 +14,10 @@ mod records;
 mod right;
 
 use gyrocal_answer::Answer;
-use gyrocal_calibration::{Options, Run};
-use gyrocal_diagnosis::{DiagnoseOptions, Gate, RecordToDiagnose, diagnose, diagnose_together};
+use gyrocal_calibration::Run;
+use gyrocal_diagnosis::{
+    DiagnoseOptions, Diagnosis, DiagnosisError, Gate, RecordToDiagnose, diagnose, diagnose_together,
+};
 use gyrocal_plant::LoadedPlant;
 use gyrocal_record::{Bench, Record};
 use gyrocal_setup::PlatformKind;
@@ -27,7 +29,7 @@ use judge::{Told, judge};
 use keys::WrongKey;
 use kinds::FieldKind;
 use plants::PlantKind;
-use right::{Right, VISIBLE};
+use right::{Right, Table, VISIBLE};
 
 /// First seeds of wrong keys, of kinds and of plants, and the distance of populations: all below a billion, where the
 /// seeds of reports begin.
@@ -74,48 +76,56 @@ pub struct FieldOutcome {
 
 impl FieldPopulation<'static> {
     /// Clean records with one wrong number in the bench file or in a column.
-    #[must_use]
-    pub fn wrong_keys() -> Vec<Self> {
-        let of = |key: WrongKey, first_seed| Self {
-            name: key.name(),
-            first_seed,
-            records: RECORDS,
-            right: key.right.words(),
-            job: Box::new(move |seed| {
-                let both = key.record(seed)?;
-                let strength = keys::strength(&both)?;
-                let [_, (record, bench)] = both;
-                let told = match bench {
-                    Ok(bench) => told(&[(record, bench)]),
-                    Err(_) => Told::set_up(right::BENCH),
-                };
-                let is_faint = strength.is_some_and(|strength| strength < VISIBLE);
-                let (outcome, answer) = outcome(key.right, None, is_faint, told);
-                Ok((
-                    FieldOutcome {
-                        strength,
-                        ..outcome
-                    },
-                    answer,
-                ))
-            }),
+    ///
+    /// # Errors
+    /// [`EvaluationError::RightAnswers`].
+    pub fn wrong_keys() -> Result<Vec<Self>, EvaluationError> {
+        let table = Table::read()?;
+        let of = |(key, first): (WrongKey, u64)| {
+            let right = table.right(&key.right)?;
+            let name = key.name();
+            Ok(Self::new(
+                &name,
+                first,
+                RECORDS,
+                right,
+                move |right, seed| {
+                    let both = key.record(seed)?;
+                    let strength = keys::strength(&both)?;
+                    let [_, (record, bench)] = both;
+                    let told = match bench {
+                        Ok(bench) => told(&[(record, bench)]),
+                        Err(_) => Told::set_up(right::BENCH),
+                    };
+                    let is_faint = strength.is_some_and(|strength| strength < VISIBLE);
+                    let (mut outcome, answer) = outcome(right, None, is_faint, told);
+                    outcome.strength = strength;
+                    Ok((outcome, answer))
+                },
+            ))
         };
-        let keys = WrongKey::all().into_iter().zip(seeds(KEYS));
-        keys.map(|(key, first)| of(key, first)).collect()
+        let keys = WrongKey::all(&table).into_iter().zip(seeds(KEYS));
+        keys.map(of).collect()
     }
 
     /// Kinds of records, from irregular rows to records of two platforms.
-    #[must_use]
-    pub fn kinds() -> Vec<Self> {
-        let of = |(kind, first_seed): (&'static FieldKind, u64)| Self {
-            name: kind.name.to_owned(),
-            first_seed,
-            records: RECORDS,
-            right: kind.right.words(),
-            job: Box::new(|seed| {
-                let made = (kind.make)(seed)?;
-                Ok(outcome(kind.right, made.axis, false, told(&made.records)))
-            }),
+    ///
+    /// # Errors
+    /// [`EvaluationError::RightAnswers`].
+    pub fn kinds() -> Result<Vec<Self>, EvaluationError> {
+        let table = Table::read()?;
+        let of = |(kind, first): (&'static FieldKind, u64)| {
+            let right = table.right(kind.right)?;
+            Ok(Self::new(
+                kind.name,
+                first,
+                RECORDS,
+                right,
+                move |right, seed| {
+                    let made = (kind.make)(seed)?;
+                    Ok(outcome(right, made.axis, false, told(&made.records)))
+                },
+            ))
         };
         FieldKind::ALL.iter().zip(seeds(KINDS)).map(of).collect()
     }
@@ -123,34 +133,58 @@ impl FieldPopulation<'static> {
     /// Records of few rows, with gaps and missing values, as declared or with a wrong number.
     #[must_use]
     pub fn short() -> Self {
-        Self {
-            name: "2 to 400 rows".to_owned(),
-            first_seed: SHORT,
-            records: SHORT_RECORDS,
-            right: Right::NOTHING.words(),
-            job: Box::new(|seed| {
+        let name = "2 to 400 rows";
+        Self::new(
+            name,
+            SHORT,
+            SHORT_RECORDS,
+            Right::nothing(),
+            |right, seed| {
                 let made = records::short(seed)?;
-                Ok(outcome(&Right::NOTHING, None, false, told(&made.records)))
-            }),
-        }
+                Ok(outcome(right, None, false, told(&made.records)))
+            },
+        )
     }
 }
 
 impl<'a> FieldPopulation<'a> {
     /// Kinds of records of the servo `examples/servo`, diagnosed with its plant.
-    #[must_use]
-    pub fn plants(servo: &'a LoadedPlant) -> Vec<Self> {
-        let of = |(kind, first_seed): (&'static PlantKind, u64)| Self {
-            name: kind.name.to_owned(),
-            first_seed,
-            records: RECORDS,
-            right: kind.right.words(),
-            job: Box::new(|seed| {
-                let told = Told::of_plant(kind.diagnosed(servo, seed));
-                Ok(outcome(kind.right, None, false, told))
-            }),
+    ///
+    /// # Errors
+    /// [`EvaluationError::RightAnswers`].
+    pub fn plants(servo: &'a LoadedPlant) -> Result<Vec<Self>, EvaluationError> {
+        let table = Table::read()?;
+        let of = |(kind, first): (&'static PlantKind, u64)| {
+            let right = table.right(kind.right)?;
+            Ok(Self::new(
+                kind.name,
+                first,
+                RECORDS,
+                right,
+                move |right, seed| {
+                    let told = Told::of_plant(kind.diagnosed(servo, seed));
+                    Ok(outcome(right, None, false, told))
+                },
+            ))
         };
         PlantKind::ALL.iter().zip(seeds(PLANTS)).map(of).collect()
+    }
+
+    /// A population whose records have one right answer, which the job gets.
+    fn new(
+        name: &str,
+        first_seed: u64,
+        records: u64,
+        right: Right,
+        job: impl Fn(&Right, u64) -> Result<Judged, EvaluationError> + Send + Sync + 'a,
+    ) -> Self {
+        Self {
+            name: name.to_owned(),
+            first_seed,
+            records,
+            right: right.words(),
+            job: Box::new(move |seed| job(&right, seed)),
+        }
     }
 }
 
@@ -170,20 +204,27 @@ fn outcome(right: &Right, axis: Option<usize>, faint: bool, told: Told) -> Judge
 
 /// The diagnosis of a record, or of several together.
 fn told(records: &[(Record, Bench)]) -> Told {
-    let options = DiagnoseOptions::default();
     if let [(record, bench)] = records {
-        return Told::of(diagnose(record, bench, &options).map(|found| found.result));
+        let found = diagnose(record, bench, &DiagnoseOptions::default());
+        return Told::of(found.map(|found| found.result));
     }
-    let named = (1..).zip(records).map(|(number, (record, bench))| {
-        let run = Run { record, bench };
-        RecordToDiagnose {
-            name: format!("record {number}"),
-            gate: Gate::new(PlatformKind::Stabilised, &run, &Options::default()),
-            bench,
-        }
-    });
-    let together = diagnose_together(named.collect(), &options, |_| ());
+    let runs = records.iter().map(|(record, bench)| Run { record, bench });
+    let together = diagnosed_together(&runs.collect::<Vec<_>>());
     Told::of(together.map(|found| found.result))
+}
+
+/// The diagnosis of several runs of one platform together by default options.
+///
+/// # Errors
+/// As [`diagnose_together`].
+pub fn diagnosed_together(runs: &[Run<'_>]) -> Result<Diagnosis<'static>, DiagnosisError> {
+    let options = DiagnoseOptions::default();
+    let named = (1..).zip(runs).map(|(number, run)| RecordToDiagnose {
+        name: format!("record {number}"),
+        gate: Gate::new(PlatformKind::Stabilised, run, &options.calibration),
+        bench: run.bench,
+    });
+    diagnose_together(named.collect(), &options, |_| ())
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use gyrocal::effect::{EffectParameter, Need, Role};
 use gyrocal::{EFFECTS, Effect};
 use gyrocal_calibration::{FittedPlatform, NoiseModel, Options, Run};
+use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, DiagnosisError, diagnose};
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{Hidden, Scenario, Simulation, simulate};
 use nalgebra::{Cholesky, DMatrix, DVector};
@@ -118,6 +119,16 @@ pub(crate) fn fit<'r>(
 #[must_use]
 pub fn run_of(Simulation { record, bench, .. }: &Simulation) -> Run<'_> {
     Run { record, bench }
+}
+
+/// The diagnosis of a simulated record by default options.
+///
+/// # Errors
+/// As [`diagnose`].
+pub fn diagnosed(
+    Simulation { record, bench, .. }: &Simulation,
+) -> Result<Diagnosis<'_>, DiagnosisError> {
+    diagnose(record, bench, &DiagnoseOptions::default())
 }
 
 /// Draws sizes of effects, in a random direction and each of `strength` sigmas of its own bound: with

@@ -80,7 +80,6 @@ mod characterise_report;
 mod characteristic;
 mod coefficient_score;
 mod comparison;
-mod effect_family;
 mod error;
 #[cfg(feature = "field")]
 mod field;
@@ -106,14 +105,13 @@ pub use cell_characteristics::{characteristics, measures};
 pub use characterise_report::{CellReport, CharacteriseReport, cell_campaign, cell_report};
 pub use characteristic::{Characteristic, Measure};
 pub use coefficient_score::CoefficientScore;
-pub use comparison::{Answer, ComparisonRow, OWN_METHOD, comparison};
-pub use effect_family::{FamilyRow, families};
+pub use comparison::{Answer, ComparisonRow, FamilyRow, OWN_METHOD, comparison, families};
 pub use error::EvaluationError;
 #[cfg(feature = "field")]
-pub use field::{FieldOutcome, FieldPopulation, Judgement};
+pub use field::{FieldOutcome, FieldPopulation, Judgement, diagnosed_together};
 pub use injection::{
-    InjectedEffect, draw_shape, inject, inject_any, inject_into, inject_one_of, nominal_fit,
-    run_of, testable_effects,
+    InjectedEffect, diagnosed, draw_shape, inject, inject_any, inject_into, inject_one_of,
+    nominal_fit, run_of, testable_effects,
 };
 pub use oracle::sets_without_walks;
 pub use out_of_catalogue::UnlistedRecord;

@@ -5,14 +5,14 @@
 //! believes, is fitted to the record with and without the effect. Beside a random walk that takes the effect up
 //! little of it is left, as no record tells a slow function of time from a walk.
 
-use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, diagnose};
+use gyrocal_diagnosis::Diagnosis;
 use gyrocal_hypothesis::{Column, ExtraColumns, ModelExtension};
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::faults::{UnlistedEffect, UnlistedKind};
 use gyrocal_truth::{Scenario, Simulation, simulate};
 
 use crate::error::EvaluationError;
-use crate::injection::{first_of, fit, nominal_fit};
+use crate::injection::{diagnosed, first_of, fit, nominal_fit};
 use crate::record_score::{InjectedScore, RecordScore};
 use crate::score::findings_score;
 
@@ -48,7 +48,7 @@ pub(crate) fn score_out_of_catalogue(
         let kind = kinds[(number as usize + attempt) % kinds.len()];
         let effect = UnlistedEffect::draw(kind, scenario, random)?;
         match UnlistedRecord::scaled(scenario, effect, strength)? {
-            Some(record) => diagnosed(scenario, record, strength),
+            Some(record) => scored(scenario, record, strength),
             None => Ok(None),
         }
     })
@@ -57,15 +57,14 @@ pub(crate) fn score_out_of_catalogue(
 /// Diagnoses the record with the effect, and corrects the size until the strength beside what is named is
 /// the requested one, or as near as some corrections come: names may leave nothing of it. `None` if they cannot
 /// be fitted to the record without it.
-fn diagnosed(
+fn scored(
     scenario: &Scenario,
     mut record: UnlistedRecord,
     strength: f64,
 ) -> Result<Option<RecordScore>, EvaluationError> {
     let mut corrections = 0;
     loop {
-        let (data, bench) = (&record.with.record, &record.with.bench);
-        let found = diagnose(data, bench, &DiagnoseOptions::default())?;
+        let found = diagnosed(&record.with)?;
         let Some(reached) = record.strength_beside(&found) else {
             return Ok(None);
         };
@@ -253,8 +252,7 @@ mod tests {
             let record = UnlistedRecord::draw(&scenario, kind, 10.0, random)
                 .unwrap()
                 .unwrap();
-            let (data, bench) = (&record.clean.record, &record.clean.bench);
-            let mut found = diagnose(data, bench, &DiagnoseOptions::default()).unwrap();
+            let mut found = diagnosed(&record.clean).unwrap();
             assert!(found.extended.is_none());
             let without = record.strength_beside(&found).unwrap();
             found.noise_model.gyro_walk_deg_per_h_per_sqrt_h = [0.003; 3];

@@ -3,7 +3,7 @@
 use gyrocal::effect::Role;
 use gyrocal_answer::{AlternativeKind, Answer, Finding, FindingKind, Parameter, RankedEffect};
 use gyrocal_calibration::NoiseModel;
-use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, diagnose};
+use gyrocal_diagnosis::Diagnosis;
 use gyrocal_statistics::NORMAL_97_5;
 use gyrocal_truth::{Scenario, Simulation};
 
@@ -11,7 +11,7 @@ use crate::baseline::{BaselineMethod, LibraryEntry, library};
 use crate::catalogue::{effect_of, same_or_equivalent, set_holds};
 use crate::coefficient_score::CoefficientScore;
 use crate::error::EvaluationError;
-use crate::injection::{InjectedEffect, nominal_fit, testable_effects};
+use crate::injection::{InjectedEffect, diagnosed, nominal_fit, testable_effects};
 use crate::oracle::{sets_in_noise, sets_without_walks};
 use crate::projection::ProjectedScores;
 use crate::record_score::{BaselineScore, FindingScore, InjectedScore, RecordScore};
@@ -36,11 +36,7 @@ pub(crate) fn score(
     injected: &[(InjectedEffect, f64)],
     methods: &[BaselineMethod],
 ) -> Result<RecordScore, EvaluationError> {
-    let found = diagnose(
-        &simulation.record,
-        &simulation.bench,
-        &DiagnoseOptions::default(),
-    )?;
+    let found = diagnosed(simulation)?;
     let record = &simulation.record;
     let mut columns = SignatureColumns::default();
     let truths: Vec<Truth<'_>> = injected

@@ -10,7 +10,7 @@ use gyrocal_testkit::run;
 use serde::{Deserialize, Serialize};
 
 use crate::before::gyrocal;
-use crate::error::Error;
+use crate::harness::Error;
 
 /// What is wrong with an answer as a file, and whether it has names that are not settled.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

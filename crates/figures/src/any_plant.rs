@@ -9,17 +9,17 @@ mod oracle;
 mod second;
 mod unknown;
 
+use std::path::PathBuf;
+
 pub(crate) use gauges::derived;
+use gyrocal_answer::Finding;
 use gyrocal_evaluation::Statistic;
 use gyrocal_plant::{FittedPlant, LoadedPlant, PlantError, PlantRecord, SearchOptions, diagnose};
 pub(crate) use gyrocal_truth::plant as simulated;
 use serde::{Deserialize, Serialize};
 
 use self::simulated::{Kind, Run, Setting, Stream, simulate};
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::sources::{PLANTS, of};
-use crate::harness::{Context, Population, Row};
+use crate::harness::{Context, Error, Figure, PLANTS, Population, Row, of};
 
 /// Seeds of clean records, and of starts; no constant was tuned on them.
 const CLEAN: u64 = 610_000;
@@ -60,40 +60,32 @@ pub(crate) fn plants() -> Result<Vec<LoadedPlant>, PlantError> {
     Kind::ALL.into_iter().map(loaded).collect()
 }
 
-/// An example plant.
-pub(crate) fn loaded(kind: Kind) -> Result<LoadedPlant, PlantError> {
+/// The file of an example plant.
+fn program(kind: Kind) -> PathBuf {
     let examples = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples");
-    let file = format!("{examples}/{}/plant.json", kind.facts().name);
-    LoadedPlant::read(std::path::Path::new(&file))
+    PathBuf::from(format!("{examples}/{}/plant.json", kind.facts().name))
 }
 
-/// A population of records of some plants in turn: `first`, `full` and `small` are of each of them.
+/// An example plant.
+pub(crate) fn loaded(kind: Kind) -> Result<LoadedPlant, PlantError> {
+    LoadedPlant::read(&program(kind))
+}
+
+/// A population of records of some plants in turn: seeds and numbers are of each of them.
 fn in_turn<'a, T>(
     name: &str,
     kinds: &'a [Kind],
-    [first, full, small]: [u64; 3],
+    seeds: [u64; 3],
     job: impl Fn(Kind, u64) -> Result<T, Error> + Sync + 'a,
 ) -> Population<'a, Of<T>> {
+    const FILES: &[&str] = &[file!(), "crates/figures/src/any_plant", "examples"];
     let count = kinds.len() as u64;
-    Population {
-        name: format!("any plant, {name}"),
-        first: count * first,
-        full: count * full,
-        small: count * small,
-        sources: of(
-            PLANTS,
-            &[
-                "crates/figures/src/any_plant.rs",
-                "crates/figures/src/any_plant",
-                "examples",
-            ],
-        ),
-        job: Box::new(move |seed| {
-            let kind = kinds[(seed % count) as usize];
-            let (plant, found) = (kind as usize, job(kind, seed / count)?);
-            Ok(Of { plant, found })
-        }),
-    }
+    let (name, seeds) = (format!("any plant, {name}"), seeds.map(|one| count * one));
+    Population::new(name, seeds, of(PLANTS, FILES), move |seed| {
+        let kind = kinds[(seed % count) as usize];
+        let (plant, found) = (kind as usize, job(kind, seed / count)?);
+        Ok(Of { plant, found })
+    })
 }
 
 fn prepared(plant: &LoadedPlant, run: Run) -> Result<PlantRecord, PlantError> {
@@ -104,6 +96,28 @@ fn prepared(plant: &LoadedPlant, run: Run) -> Result<PlantRecord, PlantError> {
         ..PlantRecord::default()
     };
     record.prepared(plant.description(), "simulated")
+}
+
+/// Shares of the records of each plant.
+fn by_kind<T: 'static>(name: &str, of: fn(&T) -> bool) -> [Row<'static, Of<T>>; Kind::ALL.len()] {
+    Kind::ALL.map(|kind| {
+        Row::share(format!("{name} {kind:?}"), move |one: &Of<T>| {
+            (one.plant == kind as usize).then(|| of(&one.found))
+        })
+    })
+}
+
+/// Parameters within a factor of three of the declared ones, as a fit begins with them.
+fn far_start(plant: &LoadedPlant, mut random: Stream) -> Vec<f64> {
+    let mut first = vec![0.0; plant.description().states.len()];
+    let parameters = plant.description().parameters.iter();
+    first.extend(parameters.map(|own| own.value * (random.log_between(1.0 / 3.0, 3.0) - 1.0)));
+    first
+}
+
+/// Whether the set of a finding holds an effect, or one that no record tells from it.
+fn holds(found: &Finding, id: &str) -> bool {
+    found.set().chain(found.equivalents()).any(|own| own == id)
 }
 
 /// False alarms on clean records; the noise of every second one is misdeclared.
@@ -123,12 +137,7 @@ fn clean(context: &Context, plants: &[LoadedPlant]) -> Result<Vec<Figure>, Error
         0.02,
         "the level is 1 %: twenty of 2000 are due, and 27 within the bound",
     )];
-    rows.extend(Kind::ALL.map(|kind| {
-        Row::share(
-            format!("any plant: false alarms, {kind:?}"),
-            move |one: &Of<bool>| (one.plant == kind as usize).then_some(one.found),
-        )
-    }));
+    rows.extend(by_kind("any plant: false alarms,", |found| *found));
     context.measure(&population, &rows)
 }
 
@@ -146,11 +155,8 @@ fn starts(context: &Context, plants: &[LoadedPlant]) -> Result<Vec<Figure>, Erro
         fits.push((record, held, usual));
     }
     let population = in_turn("starts", &kinds, [STARTS, 100, 2], |kind, seed| {
-        let mut random = Stream::new(seed, 3);
         let (plant, (record, held, _)) = (&plants[kind as usize], &fits[kind as usize]);
-        let mut first = vec![0.0; plant.description().states.len()];
-        let parameters = plant.description().parameters.iter();
-        first.extend(parameters.map(|own| own.value * (random.log_between(1.0 / 3.0, 3.0) - 1.0)));
+        let first = far_start(plant, Stream::new(seed, 3));
         let fit = FittedPlant::nominal_from(plant, record.clone(), held, Some(&first));
         Ok(fit.ok().map(|fit| fit.deviance()))
     });

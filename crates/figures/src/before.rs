@@ -17,9 +17,7 @@ use gyrocal_testkit::workspace;
 use rayon::prelude::*;
 use serde::Deserialize;
 
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::Context;
+use crate::harness::{Context, Error, Figure};
 use compare::compared;
 use moves::Moves;
 

@@ -2,7 +2,6 @@
 
 mod attitudes;
 pub(crate) mod budget;
-mod budget_trial;
 mod cost;
 
 use gyrocal_calibration::Options;
@@ -11,10 +10,9 @@ use gyrocal_statistics::NORMAL_97_5;
 use gyrocal_truth::{Coefficients, simulate};
 use serde::{Deserialize, Serialize};
 
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::sources::{CALIBRATION, of};
-use crate::harness::{COVERAGE, COVERAGE_REASON, Context, Population, Row};
+use crate::harness::{
+    CALIBRATION, COVERAGE, COVERAGE_REASON, Context, Error, Figure, Population, Row, of,
+};
 
 /// Seed of the population of scenarios; its numbers are the seeds of the records.
 const SEED: u64 = 20_150_904;

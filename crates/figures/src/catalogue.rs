@@ -8,8 +8,7 @@ use std::path::PathBuf;
 use gyrocal::{EFFECTS, Effect};
 use gyrocal_report::write_svg;
 
-use crate::error::Error;
-use crate::figure::Figure;
+use crate::harness::{Context, Error, Figure};
 use crate::page;
 use crate::values::Values;
 
@@ -18,9 +17,9 @@ pub(crate) const TEMPLATE: &str = include_str!("catalogue/page.md");
 
 const TOPIC: &str = "diagnosis --part catalogue";
 
-/// All figures of the topic; with `write` page and pictures are renewed instead of compared.
-pub(crate) fn figures(write: bool) -> Result<Vec<Figure>, Error> {
-    let families = families();
+/// All figures of the part; with leave to write page and pictures are renewed instead of compared.
+pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
+    let (write, families) = (context.write, families());
     let mut values = Values::default();
     signature::describe(&mut values)?;
     values.put("count", EFFECTS.len().to_string());

@@ -4,9 +4,7 @@
 
 use gyrocal_evaluation::{Answer, BaselineMethod, OWN_METHOD, RecordScore};
 
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::{COVERAGE, COVERAGE_REASON, Context, Row};
+use crate::harness::{COVERAGE, COVERAGE_REASON, Context, Error, Figure, Row};
 use crate::naming::{CLEAN, WITH_EFFECT, population};
 
 /// Columns of the comparison; a figure is `METHOD: COLUMN`.

@@ -22,20 +22,24 @@ fn thread_s() -> Option<f64> {
 }
 
 /// Peak memory of the process since the creation of this value.
-pub(crate) struct Peak;
+pub(crate) struct Peak(bool);
 
 impl Peak {
-    pub(crate) fn reset() -> Option<Self> {
+    pub(crate) fn reset() -> Self {
         // 5 resets the peak resident set size, proc(5).
-        std::fs::write("/proc/self/clear_refs", "5").ok()?;
-        Some(Self)
+        Self(std::fs::write("/proc/self/clear_refs", "5").is_ok())
     }
 
-    pub(crate) fn read_mb(&self) -> Option<f64> {
-        let status = std::fs::read_to_string("/proc/self/status").ok()?;
-        let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
-        let kibibytes: f64 = line.split_whitespace().nth(1)?.parse().ok()?;
-        Some(kibibytes * 1024.0 / 1e6)
+    /// NaN where the kernel does not tell: nothing was measured then, and so nothing holds.
+    pub(crate) fn read_mb(&self) -> f64 {
+        let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+        let line = status.lines().find(|line| line.starts_with("VmHWM:"));
+        let kibibytes: Option<f64> =
+            line.and_then(|line| line.split_whitespace().nth(1)?.parse().ok());
+        match kibibytes {
+            Some(kibibytes) if self.0 => 1024.0 * kibibytes / 1e6,
+            _ => f64::NAN,
+        }
     }
 }
 

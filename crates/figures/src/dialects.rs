@@ -2,7 +2,6 @@
 
 mod dialect;
 mod drawn;
-mod listed;
 
 use gyrocal_evaluation::Statistic;
 use gyrocal_instruments::{Description, InstrumentError, propose_map, read_any};
@@ -12,18 +11,15 @@ use nalgebra::{Rotation3, Unit, Vector3};
 use serde::{Deserialize, Serialize};
 
 use self::dialect::Dialect;
-use self::drawn::drawn;
-use self::listed::LISTED;
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::sources::{INSTRUMENTS, Sources, of};
-use crate::harness::{Context, Population, Row, Seeds};
+use self::drawn::{Dialects, drawn};
+use crate::harness::{Context, Error, Figure, INSTRUMENTS, Population, Row, Seeds, Sources, of};
 
-/// What can move the figures.
-pub(crate) const SOURCES: Sources = of(
+/// What can move the results.
+const SOURCES: Sources = of(
     INSTRUMENTS,
     &[
-        "crates/figures/src/dialects.rs",
+        file!(),
+        "crates/figures/src/dialects.toml",
         "crates/figures/src/dialects",
     ],
 );
@@ -54,13 +50,15 @@ struct Outcome {
 
 /// All figures of the part.
 pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
-    let listed = population("dialects listed", [LISTED_FROM, 40, 5], |seed| {
+    let dialects: Dialects = toml::from_str(include_str!("dialects.toml"))?;
+    let all = &dialects.listed;
+    let listed = |seed: u64| {
         let index = (seed % Seeds::REPORT - LISTED_FROM) as usize;
-        outcome(&LISTED[index % LISTED.len()], seed)
-    });
-    let by_chance = population("dialects drawn", [DRAWN_FROM, 40, 5], |seed| {
-        outcome(&drawn(&mut Draw::new(seed, FILE + 1)), seed)
-    });
+        outcome(&all[index % all.len()], seed)
+    };
+    let listed = Population::new("dialects listed", [LISTED_FROM, 40, 5], SOURCES, listed);
+    let by_chance = |seed| outcome(&drawn(&dialects, &mut Draw::new(seed, FILE + 1)), seed);
+    let by_chance = Population::new("dialects drawn", [DRAWN_FROM, 40, 5], SOURCES, by_chance);
     let mut figures = context.measure(&listed, &rows("listed dialects"))?;
     figures.extend(context.measure(&by_chance, &rows("drawn dialects"))?);
     Ok(figures)
@@ -90,21 +88,6 @@ fn rows(what: &str) -> [Row<'static, Outcome>; 2] {
             .at_most(0.0, "the target of all"),
         Row::words(format!("{what}: how they are read"), words),
     ]
-}
-
-fn population<'a>(
-    name: &str,
-    [first, full, small]: [u64; 3],
-    job: impl Fn(u64) -> Result<Outcome, Error> + Sync + 'a,
-) -> Population<'a, Outcome> {
-    Population {
-        name: name.to_owned(),
-        first,
-        full,
-        small,
-        sources: SOURCES,
-        job: Box::new(job),
-    }
 }
 
 /// Writes a record in a dialect and reads it.

@@ -7,9 +7,7 @@ mod firmware;
 mod precision;
 mod target;
 
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::{Context, Size};
+use crate::harness::{Context, Error, Figure, Size};
 
 /// The record that the firmware replays.
 const RECORD: &str = "examples/data/three_days.csv";

@@ -21,9 +21,7 @@ use serde::Deserialize;
 
 use crate::before::moves::{Moves, empty};
 use crate::before::{Case, cases, make, placeless, told};
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::Context;
+use crate::harness::{Context, Error, Figure};
 use lines::{Line, of_page, of_terminal};
 use values::{is_id, numbers, words};
 

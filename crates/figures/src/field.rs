@@ -9,10 +9,7 @@ use serde::{Deserialize, Serialize};
 use crate::answers::Checked;
 use crate::any_plant::plants;
 use crate::any_plant::simulated::Kind;
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::sources::{DIAGNOSIS, of};
-use crate::harness::{Context, Population, Row};
+use crate::harness::{Context, DIAGNOSIS, Error, Figure, Population, Row, of};
 
 /// Rows of the small version, with one record each: quick ones.
 const SMALL: [&str; 6] = [
@@ -44,12 +41,12 @@ const JUDGEMENTS: [(Judgement, &str); 4] = [
 
 /// All figures of the part `field` of the diagnosis.
 pub(crate) fn of_records(context: &Context) -> Result<Vec<Figure>, Error> {
-    let keys = FieldPopulation::wrong_keys();
+    let keys = FieldPopulation::wrong_keys()?;
     let mut figures = table(context, "wrong bench keys", keys)?;
     figures.extend(table(
         context,
         "records of users",
-        FieldPopulation::kinds(),
+        FieldPopulation::kinds()?,
     )?);
     Ok(figures)
 }
@@ -57,7 +54,7 @@ pub(crate) fn of_records(context: &Context) -> Result<Vec<Figure>, Error> {
 /// All figures of the part `field` of the plants.
 pub(crate) fn of_plants(context: &Context) -> Result<Vec<Figure>, Error> {
     let plants = plants()?;
-    let kinds = FieldPopulation::plants(&plants[Kind::Servo as usize]);
+    let kinds = FieldPopulation::plants(&plants[Kind::Servo as usize])?;
     table(context, "records of a user's plant", kinds)
 }
 
@@ -68,7 +65,7 @@ pub(crate) fn of_plants(context: &Context) -> Result<Vec<Figure>, Error> {
 pub(crate) fn of_answers(context: &Context) -> Result<Vec<Figure>, Error> {
     let plants = plants()?;
     let (mut all, mut is_full) = (Vec::new(), true);
-    for population in populations(&plants[Kind::Servo as usize]) {
+    for population in populations(&plants[Kind::Servo as usize])? {
         let records = context.records(&population)?;
         is_full &= records.full;
         let answers = records.records.iter().filter_map(|one| one.answer.clone());
@@ -154,34 +151,29 @@ struct Fielded {
 }
 
 /// All populations: records of the platform, then of the servo.
-fn populations(servo: &LoadedPlant) -> Vec<Population<'_, Fielded>> {
-    let rows = FieldPopulation::wrong_keys().into_iter();
-    let rows = rows.chain(FieldPopulation::kinds());
+fn populations(servo: &LoadedPlant) -> Result<Vec<Population<'_, Fielded>>, Error> {
+    let rows = FieldPopulation::wrong_keys()?.into_iter();
+    let rows = rows.chain(FieldPopulation::kinds()?);
     let rows = rows.chain([FieldPopulation::short()]);
-    let rows = rows.chain(FieldPopulation::plants(servo));
-    rows.map(population).collect()
+    let rows = rows.chain(FieldPopulation::plants(servo)?);
+    Ok(rows.map(population).collect())
 }
 
 fn population(row: FieldPopulation<'_>) -> Population<'_, Fielded> {
-    let job = row.job;
-    Population {
-        small: match row.records {
-            EACH => u64::from(SMALL.contains(&&*row.name)),
-            _ => SHORT,
-        },
-        name: format!("field {}", row.name),
-        first: row.first_seed,
-        full: row.records,
-        sources: of(
-            DIAGNOSIS,
-            &[file!(), "crates/figures/src/answers.rs", "examples/servo"],
-        ),
-        job: Box::new(move |seed| {
-            let (outcome, answer) = job(seed)?;
-            let answer = answer.as_ref().map(Checked::of).transpose()?;
-            Ok(Fielded { outcome, answer })
-        }),
-    }
+    const FILES: &[&str] = &[file!(), "crates/figures/src/answers.rs", "examples/servo"];
+    let small = match row.records {
+        EACH => u64::from(SMALL.contains(&&*row.name)),
+        _ => SHORT,
+    };
+    let (name, seeds) = (
+        format!("field {}", row.name),
+        [row.first_seed, row.records, small],
+    );
+    Population::new(name, seeds, of(DIAGNOSIS, FILES), move |seed| {
+        let (outcome, answer) = (row.job)(seed)?;
+        let answer = answer.as_ref().map(Checked::of).transpose()?;
+        Ok(Fielded { outcome, answer })
+    })
 }
 
 /// Numbers of records by judgement, and the median of their strengths.
@@ -207,9 +199,9 @@ mod tests {
     fn rows_of_the_small_version_are_rows() {
         let plants = plants().unwrap();
         let all = [
-            FieldPopulation::wrong_keys(),
-            FieldPopulation::kinds(),
-            FieldPopulation::plants(&plants[Kind::Servo as usize]),
+            FieldPopulation::wrong_keys().unwrap(),
+            FieldPopulation::kinds().unwrap(),
+            FieldPopulation::plants(&plants[Kind::Servo as usize]).unwrap(),
         ];
         let names: Vec<String> = all.into_iter().flatten().map(|one| one.name).collect();
         for small in SMALL {

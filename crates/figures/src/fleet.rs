@@ -13,10 +13,7 @@ use std::time::Instant;
 use gyrocal_testkit::{Tool, leave_out, system_python, tool};
 use serde_json::Value;
 
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::sources::{Sources, of};
-use crate::harness::{Context, Population, Size};
+use crate::harness::{Context, Error, Figure, Population, Size, Sources, of};
 use crate::kernel::instructions::{cargo, output, root};
 
 const PACKAGE: &str = "crates/python";

@@ -1,17 +1,13 @@
 //! Gain of extended models: in cross-validation, and in the coefficients.
 
 use gyrocal_calibration::FittedPlatform;
-use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
-use gyrocal_evaluation::{FindingScore, RecordScore, scenario};
+use gyrocal_evaluation::{FindingScore, RecordScore, diagnosed, scenario};
 use gyrocal_testkit::extended_comparison;
 use gyrocal_truth::{Hidden, Scenario, simulate};
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::sources::{DIAGNOSIS, of};
-use crate::harness::{Context, Population, Row};
+use crate::harness::{Context, DIAGNOSIS, Error, Figure, Population, Row, of};
 use crate::naming::{CLEAN, WITH_EFFECT, population};
 
 /// First number of these records among the scenarios; the cells have those below.
@@ -57,7 +53,13 @@ pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
         .at_least(8.0, "a quarter of the 32 nats of an effect of known size"),
     ];
     figures.extend(context.measure(&population(WITH_EFFECT), &with_effect)?);
-    figures.extend(context.measure(&across(), &of_coefficients())?);
+    let across = Population::new(
+        "cross-axis",
+        [800_000, 300, 10],
+        of(DIAGNOSIS, &[file!()]),
+        cross_axis,
+    );
+    figures.extend(context.measure(&across, &of_coefficients())?);
     figures.extend(filters());
     Ok(figures)
 }
@@ -75,18 +77,7 @@ struct Errors {
     nees: [f64; 2],
 }
 
-/// Records with a large cross-axis term.
-fn across() -> Population<'static, Errors> {
-    Population {
-        name: "cross-axis".to_owned(),
-        first: 800_000,
-        full: 300,
-        small: 10,
-        sources: of(DIAGNOSIS, &[file!()]),
-        job: Box::new(cross_axis),
-    }
-}
-
+/// Of records with a large cross-axis term.
 fn of_coefficients() -> [Row<'static, Errors>; 4] {
     let name = |what: &str| format!("0.05 deg/h/g across an axis: {what}");
     [
@@ -115,8 +106,7 @@ fn cross_axis(seed: u64) -> Result<Errors, Error> {
         hidden: vec![Hidden::new(effect, &[("size", CROSS_AXIS)])?],
         ..scenario(FIRST_NUMBER + seed)
     })?;
-    let options = DiagnoseOptions::default();
-    let found = diagnose(&simulation.record, &simulation.bench, &options)?;
+    let found = diagnosed(&simulation)?;
     let truth = simulation.truth.coefficients.named().map(|(_, v, _)| v);
     let extended = found.extended.as_ref().unwrap_or(&found.nominal);
     let of = |fit: &FittedPlatform<'_>| {

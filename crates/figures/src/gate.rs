@@ -3,134 +3,29 @@
 //! A stamp, `.ci/stamps/NAME`, is the hash of the sources of a section when it passed last. `.ci/run` runs a section
 //! if its stamp is of other sources, and the section writes its stamp itself.
 
-use crate::error::Error;
-use crate::harness::sources::Sources;
+use serde::Deserialize;
+
 use crate::harness::stamp::Stamp;
+use crate::harness::{Error, Listed, Sources};
 
 /// A slow section.
+#[derive(Deserialize)]
 struct SlowSection {
     /// Its name, that of its script in `.ci/slow` and of its stamp.
-    name: &'static str,
+    name: String,
+    #[serde(flatten)]
     sources: Sources,
 }
 
-/// All of them, in the order in which they are run. A script is among the sources of its section.
-const SECTIONS: [SlowSection; 10] = [
-    section(
-        "documentation",
-        &["crates/figures", "crates/oracle", "crates/testkit"],
-        &[".ci/slow/documentation"],
-    ),
-    section(
-        "builds",
-        &[
-            "",
-            "codegen/emit",
-            "codegen/plant",
-            "crates/cli",
-            "crates/emit",
-            "crates/testkit",
-        ],
-        &[
-            ".ci/slow/builds",
-            "docs/adding-a-term.md",
-            "tests/derivation",
-        ],
-    ),
-    section(
-        "firmware",
-        &[
-            "crates/c-api",
-            "tests/firmware",
-            "examples/controller",
-            "crates/emit",
-        ],
-        &[
-            ".ci/slow/firmware",
-            "crates/figures/src/embedded.rs",
-            "crates/figures/src/embedded",
-        ],
-    ),
-    section(
-        "formats",
-        &["crates/instruments"],
-        &[".ci/slow/formats", "tests/data/dialects"],
-    ),
-    section(
-        "wheel",
-        &["crates/python", "crates/cli"],
-        &[
-            ".ci/slow/wheel",
-            "docs/python.md",
-            "crates/figures/src/fleet.rs",
-            "crates/figures/src/fleet",
-        ],
-    ),
-    section(
-        "packages",
-        &["crates/cli", "codegen/emit", "examples/cart_pole"],
-        &[
-            ".ci/slow/packages",
-            ".ci/package",
-            ".ci/page_files",
-            "docs/notebook-to-rust.md",
-        ],
-    ),
-    section(
-        "new-plant",
-        &["crates/cli"],
-        &[".ci/slow/new-plant", ".ci/new_plant", "examples/duffing"],
-    ),
-    section(
-        "manual",
-        &["crates/cli"],
-        &[
-            ".ci/slow/manual",
-            "docs",
-            "README.md",
-            "crates/python/python",
-        ],
-    ),
-    section(
-        "peers",
-        &["", "codegen/emit", "crates/testkit"],
-        &[
-            ".ci/slow/peers",
-            "benches",
-            "crates/figures/examples",
-            "crates/figures/src/kernel.rs",
-            "crates/figures/src/kernel",
-            "crates/figures/src/generator.rs",
-            "crates/figures/src/generator",
-            "tests/data/numerics",
-        ],
-    ),
-    section(
-        "browser",
-        &["crates/cli"],
-        &[
-            ".ci/slow/browser",
-            "crates/figures/src/report.rs",
-            "crates/figures/src/report",
-            "docs/first-ten-minutes.md",
-        ],
-    ),
-];
-
-const fn section(
-    name: &'static str,
-    packages: &'static [&'static str],
-    files: &'static [&'static str],
-) -> SlowSection {
-    SlowSection {
-        name,
-        sources: Sources { packages, files },
-    }
+/// All of them, in the order in which they are run.
+fn sections() -> Result<Vec<SlowSection>, Error> {
+    let sections: Listed<SlowSection> = toml::from_str(include_str!("gate.toml"))?;
+    Ok(sections.all)
 }
 
 impl SlowSection {
     fn stamp(&self) -> Result<Stamp, Error> {
-        Stamp::new(self.name, &[&self.sources])
+        Stamp::new(&self.name, &[&self.sources])
     }
 }
 
@@ -153,12 +48,12 @@ impl Section {
     /// Prints names, a line each, or writes a stamp.
     pub(crate) fn run(&self) -> Result<(), Error> {
         if let Some(name) = &self.passed {
-            let mut sections = SECTIONS.iter();
-            let section = sections.find(|section| section.name == name);
+            let mut sections = sections()?.into_iter();
+            let section = sections.find(|section| section.name == *name);
             let section = section.ok_or_else(|| format!("no slow section is called `{name}`"))?;
             return section.stamp()?.write();
         }
-        for section in &SECTIONS {
+        for section in sections()? {
             if self.all || section.stamp()?.is_stale() {
                 println!("{}", section.name);
             }
@@ -178,7 +73,7 @@ mod tests {
     #[test]
     fn a_change_of_one_file_of_each_list_makes_a_section_stale() {
         let root = workspace();
-        for section in &SECTIONS {
+        for section in sections().unwrap() {
             let hash = |changed: &Path| {
                 let read = |file: &Path| Ok(vec![u8::from(file == changed)]);
                 section.sources.hash_with(&root, read).unwrap()
@@ -216,12 +111,13 @@ mod tests {
             .unwrap()
             .map(|entry| entry.unwrap().file_name().into_string().unwrap())
             .collect();
-        for section in &SECTIONS {
+        let all = sections().unwrap();
+        for section in &all {
             let script = format!(".ci/slow/{}", section.name);
             assert!(section.sources.files.contains(&&*script), "{script}");
         }
         scripts.sort();
-        let mut names: Vec<&str> = SECTIONS.iter().map(|section| section.name).collect();
+        let mut names: Vec<&str> = all.iter().map(|section| &*section.name).collect();
         names.sort_unstable();
         assert_eq!(scripts, names);
     }

@@ -8,9 +8,7 @@ mod race;
 
 use gyrocal_testkit::python_with;
 
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::Context;
+use crate::harness::{Context, Error, Figure};
 use crate::kernel::instructions::root;
 
 /// How to read the page of the topic, and why targets are missed.

@@ -20,9 +20,12 @@ pub(crate) mod sources;
 pub(crate) mod stamp;
 pub(crate) mod topic;
 
+pub(crate) use crate::error::Error;
+pub(crate) use crate::figure::Figure;
 pub(crate) use context::{Context, Seeds, Size};
 pub(crate) use population::{Population, Records};
 pub(crate) use row::Row;
+pub(crate) use sources::{CALIBRATION, DIAGNOSIS, INSTRUMENTS, Listed, PLANTS, Sources, of};
 
 /// Range of the coverage of 95 % intervals, and its reason.
 pub(crate) const COVERAGE: [f64; 2] = [0.93, 0.97];

@@ -9,9 +9,7 @@ use std::path::Path;
 use gyrocal_evaluation::FieldPopulation;
 use gyrocal_testkit::{snapshot, workspace};
 
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::{Context, pages};
+use crate::harness::{Context, Error, Figure, pages};
 
 /// Packages of the evidence, and their most lines in `src`.
 const EVIDENCE: [&str; 3] = ["evaluation", "figures", "testkit"];
@@ -129,7 +127,7 @@ fn topics(root: &Path) -> Result<[Figure; 3], Error> {
         }
     }
     let several = pages_of.values().filter(|count| **count > 1).count();
-    let keys = FieldPopulation::wrong_keys().len();
+    let keys = FieldPopulation::wrong_keys()?.len();
     Ok([
         Figure::within("topics of figures", [8.0; 2], topics),
         Figure::at_most("rows that two topics measure", 0.0, several as f64, ""),

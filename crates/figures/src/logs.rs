@@ -11,10 +11,7 @@ mod vertical;
 
 use gyrocal_instruments::{Description, InstrumentError};
 
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::sources::{INSTRUMENTS, of};
-use crate::harness::{Context, Population};
+use crate::harness::{Context, Error, Figure, INSTRUMENTS, Population, Sources, of};
 
 /// All figures of the part.
 pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
@@ -31,20 +28,12 @@ pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
 /// A population of logs: its name, its first seed, and its numbers of records, full and small.
 fn logs<'a, R, E: Into<Error>>(
     name: &str,
-    [first, full, small]: [u64; 3],
+    seeds: [u64; 3],
     job: impl Fn(u64) -> Result<R, E> + Sync + 'a,
 ) -> Population<'a, R> {
-    Population {
-        name: format!("logs {name}"),
-        first,
-        full,
-        small,
-        sources: of(
-            INSTRUMENTS,
-            &["crates/figures/src/logs.rs", "crates/figures/src/logs"],
-        ),
-        job: Box::new(move |seed| job(seed).map_err(Into::into)),
-    }
+    const SOURCES: Sources = of(INSTRUMENTS, &[file!(), "crates/figures/src/logs"]);
+    let job = move |seed| job(seed).map_err(Into::into);
+    Population::new(format!("logs {name}"), seeds, SOURCES, job)
 }
 
 /// The description of a log in rad/s and g, with more tables.

@@ -49,7 +49,7 @@ use harness::sources::JUDGING;
 use harness::stamp::Stamp;
 use harness::topic::Topic;
 use harness::{Context, Seeds, Size, pages};
-use topics::TOPICS;
+use topics::topics;
 
 /// How much of a topic is measured, on development seeds.
 #[derive(clap::Args, Debug)]
@@ -91,16 +91,16 @@ impl Extent {
     }
 }
 
-fn definition() -> Command {
-    let topics = TOPICS.iter().map(|topic| {
+fn definition(topics: &[Topic]) -> Command {
+    let topics = topics.iter().map(|topic| {
         let parts = topic
             .parts
             .iter()
             .map(|part| format!("  {}: {}", part.name, part.about));
         let parts: Vec<String> = parts.collect();
         // The arguments bring a text of their own, which is not that of the topic.
-        Extent::augment_args(Command::new(topic.name))
-            .about(topic.about)
+        Extent::augment_args(Command::new(topic.name.clone()))
+            .about(topic.about.clone())
             .after_help(format!("Parts:\n{}", parts.join("\n")))
     });
     let night = Night::augment_args(Command::new("night"))
@@ -120,14 +120,18 @@ fn main() -> ExitCode {
     if let Some(arguments) = before::as_command() {
         return ExitCode::from(gyrocal_cli::run(arguments));
     }
-    let matches = definition().get_matches();
+    let topics = match topics() {
+        Ok(topics) => topics,
+        Err(error) => return failed(&error),
+    };
+    let matches = definition(&topics).get_matches();
     let measured = match matches.subcommand() {
         Some(("night", matches)) => Night::from_arg_matches(matches)
             .map_err(Error::from)
-            .and_then(|night| night.run(&TOPICS)),
+            .and_then(|night| night.run(&topics)),
         Some(("check", matches)) => Check::from_arg_matches(matches)
             .map_err(Error::from)
-            .and_then(|asked| check(asked.all)),
+            .and_then(|asked| check(&topics, asked.all)),
         Some(("section", matches)) => {
             let section = Section::from_arg_matches(matches).map_err(Error::from);
             return match section.and_then(|section| section.run()) {
@@ -137,7 +141,7 @@ fn main() -> ExitCode {
         }
         Some((name, matches)) => Extent::from_arg_matches(matches)
             .map_err(Error::from)
-            .and_then(|extent| measured(name, &extent)),
+            .and_then(|extent| measured(&topics, name, &extent)),
         None => Ok(Vec::new()),
     };
     match measured {
@@ -147,8 +151,8 @@ fn main() -> ExitCode {
 }
 
 /// The figures of a topic.
-fn measured(name: &str, extent: &Extent) -> Result<Vec<Figure>, Error> {
-    let mut topics = TOPICS.iter();
+fn measured(topics: &[Topic], name: &str, extent: &Extent) -> Result<Vec<Figure>, Error> {
+    let mut topics = topics.iter();
     let topic = topics
         .find(|topic| topic.name == name)
         .ok_or("no topic of this name")?;
@@ -158,7 +162,7 @@ fn measured(name: &str, extent: &Extent) -> Result<Vec<Figure>, Error> {
         written(path, topic, extent, &figures)?;
     }
     if extent.small {
-        figures.extend(pages::compared(topic.name, &figures));
+        figures.extend(pages::compared(&topic.name, &figures));
     }
     Ok(figures)
 }
@@ -173,13 +177,13 @@ struct Check {
 
 /// The small version of every part whose sources changed since it passed, beside its page; the figures that do not
 /// hold. Each part that passes leaves its stamp.
-fn check(all: bool) -> Result<Vec<Figure>, Error> {
+fn check(topics: &[Topic], all: bool) -> Result<Vec<Figure>, Error> {
     let context = Context::new(Size::Small, Seeds::Development);
     let mut failed = Vec::new();
-    let parts = TOPICS
+    let parts = topics
         .iter()
-        .flat_map(|topic| topic.parts.iter().map(move |part| (topic.name, part)));
-    for (topic, part) in parts.filter(|(_, part)| part.small) {
+        .flat_map(|topic| topic.parts.iter().map(move |part| (&*topic.name, part)));
+    for (topic, part) in parts.filter(|(_, part)| !part.slow) {
         let name = format!("{topic}-{}", part.name);
         let stamp = Stamp::new(&format!("figures/{name}"), &[&part.sources, &JUDGING])?;
         if !all && !stamp.is_stale() {
@@ -215,7 +219,7 @@ fn written(path: &Path, topic: &Topic, extent: &Extent, figures: &[Figure]) -> R
     let records = extent
         .records
         .map_or_else(String::new, |most| format!(" --records {most}"));
-    let name = topic.name;
+    let name = &topic.name;
     let page = format!(
         "# Figures: {name}\n\nPrinted by `cargo figures {name}{parts}{small}{records}`.\n\n{}\n",
         table_of(figures)

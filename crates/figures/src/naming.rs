@@ -5,10 +5,7 @@ mod cost;
 
 use gyrocal_evaluation::{BaselineMethod, Measure, PopulationCell, RecordScore, measures};
 
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::sources::{DIAGNOSIS, of};
-use crate::harness::{Context, Population, Row, Seeds};
+use crate::harness::{Context, DIAGNOSIS, Error, Figure, Population, Row, Seeds, of};
 
 /// The cells that usual methods are compared on: without an effect, and with one of eight sigmas of its own bound.
 pub(crate) const CLEAN: PopulationCell = PopulationCell::Clean;
@@ -35,21 +32,21 @@ const CELLS: [(PopulationCell, u64); 11] = [
 /// The records of a cell.
 pub(crate) fn population(cell: PopulationCell) -> Population<'static, RecordScore> {
     let small = CELLS.iter().find(|(other, _)| *other == cell);
-    Population {
-        name: format!("cell-{}", cell.name()),
-        first: 0,
-        full: cell.full_runs(),
-        small: small.map_or(0, |(_, small)| *small),
-        sources: of(DIAGNOSIS, &[file!()]),
-        job: Box::new(move |seed| {
+    let seeds = [0, cell.full_runs(), small.map_or(0, |(_, small)| *small)];
+    let sources = of(DIAGNOSIS, &[file!()]);
+    Population::new(
+        format!("cell-{}", cell.name()),
+        seeds,
+        sources,
+        move |seed| {
             let is_compared = [CLEAN, WITH_EFFECT].contains(&cell);
             let methods = match is_compared && seed % Seeds::REPORT < COMPARED {
                 true => &BaselineMethod::ALL[..],
                 false => &[],
             };
             Ok(cell.evaluate(seed, methods)?)
-        }),
-    }
+        },
+    )
 }
 
 /// All figures of the part.

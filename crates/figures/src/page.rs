@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::error::Error;
-use crate::values::Values;
+use crate::values::{Values, length_of_number, parsed};
 
 /// The template with every `{{name}}` replaced.
 pub(crate) fn fill(template: &str, values: &Values) -> Result<String, Error> {
@@ -115,49 +115,23 @@ fn pieces(line: &str) -> Vec<Piece<'_>> {
     let (mut word, mut at) = (0, 0);
     while at < line.len() {
         let after_word = line[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_');
-        match number(&line[at..]).filter(|_| !after_word) {
-            Some((length, value, digit)) => {
-                pieces.push(Piece::Word(&line[word..at]));
-                pieces.push(Piece::Number { value, digit });
-                at += length;
-                word = at;
-            }
-            None => at += line[at..].chars().next().map_or(1, char::len_utf8),
-        }
+        let rest = &line[at..];
+        let length = match after_word || rest.starts_with('+') {
+            true => 0,
+            false => length_of_number(rest),
+        };
+        let Some((value, last)) = parsed(&rest[..length]) else {
+            at += rest.chars().next().map_or(1, char::len_utf8);
+            continue;
+        };
+        let digit = 10_f64.powi(last.unwrap_or(0));
+        pieces.push(Piece::Word(&line[word..at]));
+        pieces.push(Piece::Number { value, digit });
+        at += length;
+        word = at;
     }
     pieces.push(Piece::Word(&line[word..]));
     pieces
-}
-
-/// The number at the start of a text: its length, value, and last digit.
-fn number(text: &str) -> Option<(usize, f64, f64)> {
-    let digits = |from: usize| {
-        let rest = text.as_bytes().get(from..).unwrap_or_default();
-        rest.iter().take_while(|byte| byte.is_ascii_digit()).count()
-    };
-    let sign = usize::from(text.starts_with('-'));
-    let whole = digits(sign);
-    if whole == 0 {
-        return None;
-    }
-    let mut end = sign + whole;
-    let mut places = 0;
-    if text[end..].starts_with('.') && digits(end + 1) > 0 {
-        places = digits(end + 1);
-        end += 1 + places;
-    }
-    let mut power = 0;
-    if text[end..].starts_with('e') {
-        let minus = usize::from(text[end + 1..].starts_with('-'));
-        let count = digits(end + 1 + minus);
-        if count > 0 {
-            let exponent_end = end + 1 + minus + count;
-            power = text[end + 1..exponent_end].parse().ok()?;
-            end = exponent_end;
-        }
-    }
-    let value = text[..end].parse().ok()?;
-    Some((end, value, 10_f64.powi(power - places as i32)))
 }
 
 /// The commit of a workspace, as far as `git` tells it; `-dirty` if files differ from it but for the pages of

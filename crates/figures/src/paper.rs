@@ -7,9 +7,7 @@ mod ways;
 
 use gyrocal_report::to_png;
 
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::{Context, Seeds, Size};
+use crate::harness::{Context, Error, Figure, Seeds, Size};
 use crate::page::{docs, fill, renewed};
 use crate::values::Values;
 

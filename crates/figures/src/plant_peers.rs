@@ -14,9 +14,7 @@ use serde::{Deserialize, Serialize};
 use crate::any_plant::hidden::{DETECTABLE, Hidden, population, settings};
 use crate::any_plant::plants;
 use crate::any_plant::simulated::{Kind, simulate};
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::Context;
+use crate::harness::{Context, Error, Figure};
 use crate::kernel::instructions::output;
 
 /// Most records that are compared.

@@ -7,9 +7,7 @@ use gyrocal_plant::{ColumnMap, LoadedPlant, SearchOptions, diagnose};
 use gyrocal_words::plant::{verdict, why};
 
 use crate::any_plant::derived;
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::Context;
+use crate::harness::{Context, Error, Figure};
 use crate::page;
 use crate::values::{Values, table};
 

@@ -9,7 +9,7 @@ use gyrocal::effect::EffectKind;
 use gyrocal_evaluation::{constant_of_channel, effect_of};
 use gyrocal_truth::{Hidden, Scenario};
 
-use crate::error::Error;
+use crate::harness::Error;
 
 /// The hidden effects of a scenario as they continue in a record that starts so long after: what has grown is a
 /// constant then, and what happened at a time has left a constant or nothing.

@@ -9,9 +9,7 @@ use gyrocal_testkit::contracts::words;
 use gyrocal_testkit::{run, workspace};
 
 use crate::before::gyrocal;
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::Context;
+use crate::harness::{Context, Error, Figure};
 
 /// Window of the browser, px.
 const WINDOW: [u32; 2] = [1280, 800];

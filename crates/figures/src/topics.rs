@@ -1,359 +1,82 @@
-//! The eight topics: which part measures what.
+//! The eight topics: which part measures what. `topics.toml` has what each part is, and what can move it.
 
-mod doors;
-
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::Context;
-use crate::harness::sources::{CALIBRATION, DIAGNOSIS, FILTER, INSTRUMENTS, PLANTS, Sources, of};
-use crate::harness::topic::{Part, Topic};
+use crate::harness::topic::{Introduce, Measure, Topic};
+use crate::harness::{Error, Listed};
 use crate::{
-    any_plant, calibration, catalogue, comparison, diagnosis_ground, dialects, embedded, field,
-    gain, generator, kernel, logs, measured, naming, paper, plant_peers, real_plants, records,
-    truth, watch,
+    any_plant, before, calibration, catalogue, comparison, diagnosis_ground, dialects, embedded,
+    facts, field, fleet, gain, generator, house, kernel, logs, measured, naming, paper,
+    plant_peers, real_plants, records, report, truth, watch,
 };
 
-/// All topics.
-pub(crate) const TOPICS: [Topic; 8] = [
-    Topic {
-        name: "kernel",
-        about: "The filter's kernel and generated code: speed, scaling, rounding, instructions, other generators.",
-        parts: &[
-            Part {
-                small: false,
-                introduction: |_| kernel::INTRODUCTION.to_owned(),
-                ..part(
-                    "filter",
-                    "The structured kernel: rounding errors, instructions, speed, scaling.",
-                    of(
-                        FILTER,
-                        &[
-                            "crates/figures/src/kernel.rs",
-                            "crates/figures/src/kernel",
-                            "crates/figures/examples",
-                            "examples/step_times.rs",
-                        ],
-                    ),
-                    kernel::figures,
-                )
-            },
-            Part {
-                small: false,
-                introduction: |_| generator::INTRODUCTION.to_owned(),
-                ..part(
-                    "generator",
-                    "The generator of Rust against others: speed, instructions, operations, random graphs; derivation and builds.",
-                    of(
-                        FILTER,
-                        &[
-                            "crates/figures/src/generator.rs",
-                            "crates/figures/src/generator",
-                        ],
-                    ),
-                    generator::figures,
-                )
-            },
-        ],
-    },
-    Topic {
-        name: "calibration",
-        about: "From symbols to nine drift coefficients: consistency, cost, budget, the paper.",
-        parts: &[
-            part(
-                "estimator",
-                "The estimators over a population: consistency, coverage, a second attitude, cost.",
-                of(
-                    CALIBRATION,
-                    &[
-                        "crates/figures/src/calibration.rs",
-                        "crates/figures/src/calibration",
-                    ],
-                ),
-                calibration::figures,
-            ),
-            part(
-                "budget",
-                "The uncertainty budget against simulated and calibrated runs.",
-                of(CALIBRATION, &["crates/figures/src/calibration"]),
-                calibration::budget::figures,
-            ),
-            part(
-                "paper",
-                "The paper, reproduced and corrected: docs/paper.md, its pictures, its filter beside others.",
-                of(
-                    CALIBRATION,
-                    &["crates/figures/src/paper.rs", "crates/figures/src/paper"],
-                ),
-                paper::figures,
-            ),
-        ],
-    },
-    Topic {
-        name: "diagnosis",
-        about: "Truth of the diagnosis: clean records, causes, noise, effects outside of the catalogue, set-up, hostile records.",
-        parts: &[
-            diagnosed(
-                "ground",
-                "The noise audit, and signatures against the simulation.",
-                diagnosis_ground::figures,
-            ),
-            diagnosed(
-                "naming",
-                "Cells of `gyrocal characterise`: detection, names, sets, false alarms.",
-                naming::figures,
-            ),
-            Part {
-                introduction: comparison::side_by_side,
-                ..diagnosed(
-                    "comparison",
-                    "The diagnosis beside the usual tests and selection methods, on the same records.",
-                    comparison::figures,
-                )
-            },
-            diagnosed(
-                "gain",
-                "Gain of extended models: in cross-validation, in the coefficients.",
-                gain::figures,
-            ),
-            hidden(
-                "setup",
-                "Gross errors of the set-up.",
-                truth::setup::figures,
-            ),
-            hidden(
-                "hostile",
-                "Work on records that no model fits.",
-                truth::hostile::figures,
-            ),
-            hidden(
-                "shapes",
-                "Onsets and time constants.",
-                truth::shapes::figures,
-            ),
-            hidden(
-                "causes",
-                "One cause of the catalogue in noise that is misdeclared in half of the records.",
-                truth::causes::figures,
-            ),
-            hidden(
-                "walks",
-                "Random walks of the gyros.",
-                truth::noise::of_walks,
-            ),
-            hidden("flicker", "Flicker of the gyros.", truth::noise::of_flicker),
-            hidden(
-                "clean",
-                "Noise other than declared, without a cause.",
-                truth::noise::of_clean,
-            ),
-            hidden(
-                "together",
-                "A cause of the catalogue beside random walks.",
-                truth::together::figures,
-            ),
-            hidden(
-                "outside",
-                "Causes outside of the catalogue.",
-                truth::outside::figures,
-            ),
-            diagnosed(
-                "field",
-                "Records that a user could have: wrong numbers in bench files, and kinds of records.",
-                field::of_records,
-            ),
-            part(
-                "catalogue",
-                "The catalogue of effects: docs/catalogue.md and a picture of each signature.",
-                of(
-                    DIAGNOSIS,
-                    &[
-                        "crates/figures/src/catalogue.rs",
-                        "crates/figures/src/catalogue",
-                    ],
-                ),
-                |to| catalogue::figures(to.write),
-            ),
-        ],
-    },
-    Topic {
-        name: "records",
-        about: "Several records of one platform: together, planned, and predicted.",
-        parts: &[
-            diagnosed(
-                "several",
-                "Several records of one platform, diagnosed together.",
-                records::several::figures,
-            ),
-            diagnosed(
-                "planning",
-                "Planned runs, made: predicted against actual sigmas and confidence sets.",
-                records::planning::figures,
-            ),
-            diagnosed(
-                "later",
-                "A second record, predicted by the extended model of a first.",
-                records::later::figures,
-            ),
-        ],
-    },
-    Topic {
-        name: "instruments",
-        about: "Instrument tests on simulated logs and on recordings of real gyros.",
-        parts: &[
-            part(
-                "logs",
-                "Instrument tests on simulated logs: noise, positions, stops, rates.",
-                of(
-                    INSTRUMENTS,
-                    &["crates/figures/src/logs.rs", "crates/figures/src/logs"],
-                ),
-                logs::figures,
-            ),
-            part(
-                "dialects",
-                "Dialects of files, listed and drawn: read as they are, or by the map that is proposed.",
-                dialects::SOURCES,
-                dialects::figures,
-            ),
-            part(
-                "measured",
-                "Two recordings of real gyros: docs/measured-data.md.",
-                of(
-                    INSTRUMENTS,
-                    &[
-                        "crates/figures/src/measured.rs",
-                        "crates/figures/src/measured",
-                    ],
-                ),
-                measured::figures,
-            ),
-        ],
-    },
-    Topic {
-        name: "plants",
-        about: "Diagnosis of any plant: simulated plants with hidden effects, other tools.",
-        parts: &[
-            part(
-                "simulated",
-                "Five simulated plants with hidden effects: alarms, sets, gain, starts, time.",
-                of(
-                    PLANTS,
-                    &[
-                        "crates/figures/src/any_plant.rs",
-                        "crates/figures/src/any_plant",
-                    ],
-                ),
-                any_plant::figures,
-            ),
-            part(
-                "field",
-                "Kinds of records of a servo that a user could have.",
-                of(
-                    PLANTS,
-                    &[
-                        "crates/figures/src/any_plant.rs",
-                        "crates/figures/src/field.rs",
-                        "examples/servo",
-                    ],
-                ),
-                field::of_plants,
-            ),
-            Part {
-                small: false,
-                ..part(
-                    "real",
-                    "Records of real plants: what is named, and the error on a later record.",
-                    of(
-                        PLANTS,
-                        &[
-                            "crates/figures/src/real_plants.rs",
-                            "tests/data/measured/quarter_drone",
-                            "tests/data/measured/buck_converter",
-                        ],
-                    ),
-                    real_plants::figures,
-                )
-            },
-            Part {
-                small: false,
-                ..part(
-                    "peers",
-                    "The diagnosis of a plant beside sparse and symbolic regression from PyPI.",
-                    of(
-                        PLANTS,
-                        &[
-                            "crates/figures/src/any_plant.rs",
-                            "crates/figures/src/any_plant",
-                            "crates/figures/src/plant_peers.rs",
-                            "crates/figures/src/plant_peers",
-                        ],
-                    ),
-                    plant_peers::figures,
-                )
-            },
-        ],
-    },
-    doors::DOORS,
-    Topic {
-        name: "embedded",
-        about: "The filter and the watch in a controller.",
-        parts: &[
-            Part {
-                small: false,
-                ..part(
-                    "controller",
-                    "The filter on an emulated Cortex-M4F, single precision, C.",
-                    of(
-                        &["", "crates/c-api", "tests/firmware"],
-                        &[
-                            "crates/figures/src/embedded.rs",
-                            "crates/figures/src/embedded",
-                        ],
-                    ),
-                    embedded::figures,
-                )
-            },
-            part(
-                "watch",
-                "The watch beside the filter: false alarms, delays, jumps, sets in simulated platform-years.",
-                watch::SOURCES,
-                watch::figures,
-            ),
-        ],
-    },
+/// Topic and part, and what measures it.
+const MEASURES: [(&str, &str, Measure); 39] = [
+    ("kernel", "filter", kernel::figures),
+    ("kernel", "generator", generator::figures),
+    ("calibration", "estimator", calibration::figures),
+    ("calibration", "budget", calibration::budget::figures),
+    ("calibration", "paper", paper::figures),
+    ("diagnosis", "ground", diagnosis_ground::figures),
+    ("diagnosis", "naming", naming::figures),
+    ("diagnosis", "comparison", comparison::figures),
+    ("diagnosis", "gain", gain::figures),
+    ("diagnosis", "setup", truth::setup::figures),
+    ("diagnosis", "hostile", truth::hostile::figures),
+    ("diagnosis", "shapes", truth::shapes::figures),
+    ("diagnosis", "causes", truth::causes::figures),
+    ("diagnosis", "walks", truth::noise::of_walks),
+    ("diagnosis", "flicker", truth::noise::of_flicker),
+    ("diagnosis", "clean", truth::noise::of_clean),
+    ("diagnosis", "together", truth::together::figures),
+    ("diagnosis", "outside", truth::outside::figures),
+    ("diagnosis", "field", field::of_records),
+    ("diagnosis", "catalogue", catalogue::figures),
+    ("records", "several", records::several::figures),
+    ("records", "planning", records::planning::figures),
+    ("records", "later", records::later::figures),
+    ("instruments", "logs", logs::figures),
+    ("instruments", "dialects", dialects::figures),
+    ("instruments", "measured", measured::figures),
+    ("plants", "simulated", any_plant::figures),
+    ("plants", "field", field::of_plants),
+    ("plants", "real", real_plants::figures),
+    ("plants", "peers", plant_peers::figures),
+    ("doors", "structure", house::figures),
+    ("doors", "answers", field::of_answers),
+    ("doors", "before", before::figures),
+    ("doors", "facts", facts::figures),
+    ("doors", "numbers", facts::numbers::figures),
+    ("doors", "report", report::figures),
+    ("doors", "fleet", fleet::figures),
+    ("embedded", "controller", embedded::figures),
+    ("embedded", "watch", watch::figures),
 ];
 
-const fn part(
-    name: &'static str,
-    about: &'static str,
-    sources: Sources,
-    figures: fn(&Context) -> Result<Vec<Figure>, Error>,
-) -> Part {
-    Part {
-        name,
-        about,
-        small: true,
-        sources,
-        figures,
-        introduction: |_| String::new(),
+/// Topic and part, and the text above its table, where there is one.
+const INTRODUCTIONS: [(&str, &str, Introduce); 3] = [
+    ("kernel", "filter", |_| kernel::INTRODUCTION.to_owned()),
+    ("kernel", "generator", |_| {
+        generator::INTRODUCTION.to_owned()
+    }),
+    ("diagnosis", "comparison", comparison::side_by_side),
+];
+
+/// All topics.
+///
+/// # Errors
+/// If the table lists a part that nothing measures, or cannot be read.
+pub(crate) fn topics() -> Result<Vec<Topic>, Error> {
+    let mut topics: Listed<Topic> = toml::from_str(include_str!("topics.toml"))?;
+    for topic in &mut topics.all {
+        for part in &mut topic.parts {
+            let is_own = |of: &str, name: &str| of == topic.name && name == part.name;
+            let mut measures = MEASURES.iter().filter(|(of, name, _)| is_own(of, name));
+            let measure = measures.next().map(|(.., measure)| *measure);
+            part.figures = measure.ok_or_else(|| format!("nothing measures `{}`", part.name))?;
+            let mut texts = INTRODUCTIONS
+                .iter()
+                .filter(|(of, name, _)| is_own(of, name));
+            part.introduction = texts.next().map(|(.., text)| *text);
+        }
     }
-}
-
-/// A part that measures diagnoses of simulated records of the platform.
-const fn diagnosed(
-    name: &'static str,
-    about: &'static str,
-    figures: fn(&Context) -> Result<Vec<Figure>, Error>,
-) -> Part {
-    part(name, about, of(DIAGNOSIS, &["crates/figures/src"]), figures)
-}
-
-/// A part that measures diagnoses of records whose noise, set-up or causes are other than declared.
-const fn hidden(
-    name: &'static str,
-    about: &'static str,
-    figures: fn(&Context) -> Result<Vec<Figure>, Error>,
-) -> Part {
-    let files = &["crates/figures/src/truth.rs", "crates/figures/src/truth"];
-    part(name, about, of(DIAGNOSIS, files), figures)
+    Ok(topics.all)
 }

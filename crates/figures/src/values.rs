@@ -39,6 +39,39 @@ pub(crate) fn two_digits(value: f64) -> String {
     }
 }
 
+/// Length of the number that a text begins with: sign, digits, decimals, exponent; zero of a text that begins with none.
+pub(crate) fn length_of_number(text: &str) -> usize {
+    let digits = |from: usize| {
+        let tail = text.get(from..).unwrap_or_default();
+        tail.len() - tail.trim_start_matches(|c: char| c.is_ascii_digit()).len()
+    };
+    let sign = usize::from(text.starts_with(['+', '-']));
+    let mut length = sign + digits(sign);
+    if length == sign {
+        return 0;
+    }
+    if text[length..].starts_with('.') && digits(length + 1) > 0 {
+        length += 1 + digits(length + 1);
+    }
+    if let Some(exponent) = text[length..].strip_prefix('e') {
+        let from = length + 1 + usize::from(exponent.starts_with(['+', '-']));
+        if digits(from) > 0 {
+            length = from + digits(from);
+        }
+    }
+    length
+}
+
+/// Value of a printed number, and the power of ten of its last digit; `None` for that of an integer.
+pub(crate) fn parsed(digits: &str) -> Option<(f64, Option<i32>)> {
+    let (mantissa, exponent) = digits.split_once('e').unwrap_or((digits, "0"));
+    let exponent: i32 = exponent.parse().ok()?;
+    let decimals = mantissa.split_once('.').map_or(0, |(_, rest)| rest.len());
+    let has_last = digits.contains(['.', 'e']);
+    let last = has_last.then(|| exponent - decimals as i32);
+    Some((digits.parse().ok()?, last))
+}
+
 /// A table of Markdown.
 pub(crate) fn table(header: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
     let rule = "|---".repeat(header.len());

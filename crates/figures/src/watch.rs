@@ -15,10 +15,7 @@ mod sound;
 
 use gyrocal::watch::EFFECTS_BY_DEFAULT;
 
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::sources::{Sources, of};
-use crate::harness::{Context, Population};
+use crate::harness::{Context, Error, Figure, Population, Sources, of};
 
 /// Sizes of the watch and of its filter.
 const STATES: usize = gyrocal::Platform::STATES;
@@ -39,7 +36,7 @@ const LANES: usize = 10;
 const FEW_LANES: usize = 3;
 
 /// What can move the results.
-pub(crate) const SOURCES: Sources = of(
+const SOURCES: Sources = of(
     &["", "crates/diagnosis", "crates/truth"],
     &["crates/figures/src/watch.rs", "crates/figures/src/watch"],
 );

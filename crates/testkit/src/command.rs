@@ -4,8 +4,7 @@ use std::process::Command;
 use std::sync::OnceLock;
 
 use crate::copy::workspace;
-use crate::files::fresh_directory;
-use crate::tools::{Tool, leave_out, programs, tool};
+use crate::tools::{Tool, leave_out, tool};
 
 /// Outcome of a command.
 #[derive(Debug)]
@@ -143,38 +142,12 @@ pub fn real_environments() -> PathBuf {
         .map_or_else(|| target_directory().join("gyrocal-codegen"), PathBuf::from)
 }
 
-/// A directory for `PATH` that has cargo, the compiler and a linker, and no Python.
-pub fn tools_only(directory: PathBuf) -> PathBuf {
-    let directory = fresh_directory(directory);
-    let sysroot = run(Command::new("rustc").args(["--print", "sysroot"]))
-        .succeeded()
-        .stdout;
-    let sysroot = PathBuf::from(sysroot.trim());
-    for name in ["cargo", "rustc"] {
-        link(&sysroot.join("bin").join(name), &directory.join(name));
-    }
-    for name in ["cc", "ld"] {
-        let path = std::env::var_os("PATH").unwrap_or_default();
-        let found = programs(name, &path);
-        let first = found.first().unwrap_or_else(|| panic!("no `{name}`"));
-        link(first, &directory.join(name));
-    }
-    directory
-}
-
 /// A real interpreter, not the shim of a version manager.
 pub fn system_python() -> PathBuf {
     let python = tool(Tool::Python).expect("a Python in PATH");
     let executable = ["-I", "-c", "import sys; print(sys.executable)"];
     let outcome = run(Command::new(python).args(executable)).succeeded();
     PathBuf::from(outcome.stdout.trim())
-}
-
-fn link(original: &Path, link: &Path) {
-    #[cfg(unix)]
-    std::os::unix::fs::symlink(original, link).unwrap();
-    #[cfg(not(unix))]
-    std::fs::copy(original, link).unwrap();
 }
 
 /// The target directory that this test program was built in.

@@ -37,24 +37,6 @@ impl WorkspaceCopy {
     pub fn edit(&self, file: &str, from: &str, to: &str) {
         edit(self.root.join(file), from, to);
     }
-
-    /// Adds a program `probe` to the copy that uses the library.
-    pub fn add_probe(&self, main: &str) {
-        self.add_program("probe", &[("gyrocal", "../..")], main);
-    }
-
-    /// Adds a program to the copy that uses packages of it, by name and path from the program.
-    pub fn add_program(&self, name: &str, packages: &[(&str, &str)], main: &str) {
-        let package = self.root.join("crates").join(name);
-        fs::create_dir_all(package.join("src")).unwrap();
-        let mut manifest =
-            format!("[package]\nname = \"{name}\"\nedition = \"2024\"\n\n[dependencies]\n");
-        for (package, path) in packages {
-            manifest.push_str(&format!("{package} = {{ path = \"{path}\" }}\n"));
-        }
-        fs::write(package.join("Cargo.toml"), manifest).unwrap();
-        fs::write(package.join("src/main.rs"), main).unwrap();
-    }
 }
 
 fn synchronise(from: &Path, to: &Path) {

@@ -1,6 +1,6 @@
 //! Shared support of tests, benches and figures; not part of the library.
 //!
-//! - Without features: copies of the workspace, small derivations, cargo and Python as a user would
+//! - Without features: copies of the workspace, cargo and Python as a user would
 //!   have them, for tests of the build, tools that a build does not bring (`tools`), and interleaved timing.
 //! - `filters`: a platform with any number of states, rounding errors against 400-bit references,
 //!   Kalman filters of other packages, and times of a step.
@@ -38,7 +38,6 @@ pub mod extended_platform;
 mod files;
 #[cfg(feature = "noise")]
 pub mod noise_faults;
-mod own_terms;
 #[cfg(feature = "filters")]
 pub mod peer_filters;
 #[cfg(feature = "filters")]
@@ -46,14 +45,9 @@ pub mod rounding_errors;
 #[cfg(feature = "filters")]
 pub mod step_times;
 pub mod timing;
-mod tiny;
 mod tools;
 
-pub use command::{
-    Outcome, cargo, codegen, python_with, real_environments, run, system_python, tools_only,
-};
+pub use command::{Outcome, cargo, codegen, python_with, real_environments, run, system_python};
 pub use copy::{WorkspaceCopy, workspace};
 pub use files::{edit, executable, fresh_directory, snapshot};
-pub use own_terms::{FoundParameter, FoundTerm, add_own_terms, code_block, find_own_terms};
-pub use tiny::TinyDerivation;
-pub use tools::{Tool, leave_out, tool};
+pub use tools::{Tool, leave_out, programs, tool};

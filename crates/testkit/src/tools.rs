@@ -162,7 +162,7 @@ fn tool_among(tool: Tool, variables: Variables) -> Option<PathBuf> {
 }
 
 /// Files of a name in the folders of a search path.
-pub(crate) fn programs(name: &str, path: &OsStr) -> Vec<PathBuf> {
+pub fn programs(name: &str, path: &OsStr) -> Vec<PathBuf> {
     let all = std::env::split_paths(path).map(|folder| folder.join(name));
     all.filter(|program| program.is_file()).collect()
 }

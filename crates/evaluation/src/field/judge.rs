@@ -137,13 +137,13 @@ pub(super) fn is_physical(id: &str) -> bool {
 }
 
 /// Whether an id is of a list of names; `i` of a family is `axis`, if that is given, but of noise any.
-fn is_of(id: &str, names: Names, axis: Option<usize>) -> bool {
+fn is_of(id: &str, names: &[String], axis: Option<usize>) -> bool {
     let is_noise = effect_of(id).is_some_and(|effect| matches!(effect.kind, EffectKind::Noise(_)));
     names.iter().any(|name| match axis {
         Some(axis) if name.contains("_i.") && !is_noise => {
             same_or_equivalent(id, &name.replace("_i.", &format!("_{}.", AXES[axis])))
         }
-        _ => same_or_equivalent(id, name) || effect_family(id) == *name,
+        _ => same_or_equivalent(id, name) || effect_family(id) == name,
     })
 }
 
@@ -160,26 +160,26 @@ pub(super) fn judge(right: &Right, axis: Option<usize>, faint: bool, told: &Told
             false => Judgement::NotSettled,
         };
     }
-    let by_name = |name: &Name, list: Names| is_of(&name.id, list, axis);
-    let by_set = |name: &Name, list: Names| name.set.iter().any(|id| is_of(id, list, axis));
+    let by_name = |name: &Name, list: &[String]| is_of(&name.id, list, axis);
+    let by_set = |name: &Name, list: &[String]| name.set.iter().any(|id| is_of(id, list, axis));
     let mut free: Vec<&Name> = told.names.iter().collect();
-    let mut takes = |list: Names, tells: &dyn Fn(&Name, Names) -> bool| {
+    let mut takes = |list: &[String], tells: &dyn Fn(&Name, &[String]) -> bool| {
         let place = free.iter().position(|name| tells(name, list));
         place.map(|place| free.remove(place)).is_some()
     };
     // Each is told by a finding of its own: by its name, or else by its set.
-    let mut left = right.each.to_vec();
+    let mut left: Vec<&Names> = right.each.iter().collect();
     left.retain(|list| !takes(list, &by_name));
     let is_named = left.is_empty();
     left.retain(|list| !takes(list, &by_set));
-    let at_once = takes(right.whole, &by_name);
+    let at_once = takes(&right.whole, &by_name);
     let is_told = at_once || left.len() < right.each.len();
     let is_whole = at_once || (left.is_empty() && is_told);
     let is_named = at_once || is_named || right.in_set;
-    free.retain(|name| !by_name(name, right.beside));
-    let is_false = |name: &&Name| name.is_physical && !by_name(name, right.near);
+    free.retain(|name| !by_name(name, &right.beside));
+    let is_false = |name: &&Name| name.is_physical && !by_name(name, &right.near);
     let is_physical = free.iter().any(is_false);
-    let is_near = free.iter().any(|name| by_name(name, right.near));
+    let is_near = free.iter().any(|name| by_name(name, &right.near));
     let only_unlisted = !free.is_empty() && free.iter().all(|name| name.id == UNLISTED);
     match (is_told, is_physical) {
         (true, _) if is_whole && is_named && free.is_empty() => Judgement::Right,

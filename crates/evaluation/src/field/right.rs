@@ -1,29 +1,68 @@
 //! Right answers, as data.
 
+use std::collections::BTreeMap;
+
+use serde::Deserialize;
+
+use super::keys::WrongKey;
+use crate::error::EvaluationError;
+
+/// The table of right answers and of wrong keys.
+#[derive(Deserialize)]
+pub(super) struct Table {
+    right: BTreeMap<String, Right>,
+    pub(super) key: Vec<WrongKey>,
+}
+
+impl Table {
+    pub(super) fn read() -> Result<Self, EvaluationError> {
+        let read = toml::from_str(include_str!("right.toml"));
+        read.map_err(|error| EvaluationError::RightAnswers {
+            reason: error.to_string(),
+        })
+    }
+
+    /// The answer of a name.
+    pub(super) fn right(&self, name: &str) -> Result<Right, EvaluationError> {
+        let right = self.right.get(name).cloned();
+        right.ok_or_else(|| EvaluationError::RightAnswers {
+            reason: format!("it has no `{name}`"),
+        })
+    }
+}
+
 /// The answer that is right for a record, in names: the id of an effect of the catalogue or of its family
 /// (`accel_i.noise`), which stands for its exact equivalents too; the kind of an error of the set-up (`latitude`);
 /// `bench`, a refusal by the reader of the bench file; `several-platforms`; and `unlisted`, which is said by
 /// residuals that are not white or a probability above a half of a cause outside of the catalogue.
-#[derive(Clone, Copy)]
+#[derive(Clone, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub(super) struct Right {
     /// What the record has: each is told by a name of one of these lists. Nothing, if there are none.
-    pub(super) each: &'static [Names],
+    pub(super) each: Vec<Names>,
     /// Names that tell all of it at once.
+    #[serde(default)]
     pub(super) whole: Names,
     /// Names that are not false, but not the answer either.
+    #[serde(default)]
     pub(super) near: Names,
     /// Names that may be told beside.
+    #[serde(default)]
     pub(super) beside: Names,
     /// Whether it is enough that confidence sets hold it; otherwise findings have its names.
+    #[serde(default)]
     pub(super) in_set: bool,
     /// Whether it may be left untold.
+    #[serde(default)]
     pub(super) silent: Silent,
 }
 
 /// Records of which nothing need be told.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub(super) enum Silent {
     /// None.
+    #[default]
     Never,
     /// Those that show less than [`VISIBLE`].
     Faint,
@@ -39,49 +78,15 @@ pub(super) const BENCH: &str = "bench";
 pub(super) const SEVERAL: &str = "several-platforms";
 
 /// Names of which one is enough.
-pub(super) type Names = &'static [&'static str];
+pub(super) type Names = Vec<String>;
 
 impl Right {
     /// Nothing is to be told.
-    pub(super) const NOTHING: Self = Self {
-        each: &[],
-        whole: &[],
-        near: &[],
-        beside: &[],
-        in_set: false,
-        silent: Silent::Always,
-    };
-
-    /// One name of each list must be told.
-    pub(super) const fn told(each: &'static [Names]) -> Self {
+    pub(super) fn nothing() -> Self {
         Self {
-            each,
-            silent: Silent::Never,
-            ..Self::NOTHING
+            silent: Silent::Always,
+            ..Self::default()
         }
-    }
-
-    pub(super) const fn in_set(each: &'static [Names]) -> Self {
-        Self {
-            in_set: true,
-            ..Self::told(each)
-        }
-    }
-
-    pub(super) const fn silent(self, silent: Silent) -> Self {
-        Self { silent, ..self }
-    }
-
-    pub(super) const fn near(self, near: Names) -> Self {
-        Self { near, ..self }
-    }
-
-    pub(super) const fn beside(self, beside: Names) -> Self {
-        Self { beside, ..self }
-    }
-
-    pub(super) const fn or_whole(self, whole: Names) -> Self {
-        Self { whole, ..self }
     }
 
     /// The same in words.

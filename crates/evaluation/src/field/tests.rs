@@ -6,20 +6,23 @@ use toml::Value;
 use super::judge::{Name, is_physical};
 use super::keys::EXEMPT;
 use super::records::clean;
-use super::right::Silent;
 use super::*;
 
 #[test]
 fn populations_have_names_and_seeds_of_their_own() {
-    let mut all = FieldPopulation::wrong_keys();
+    let mut all = FieldPopulation::wrong_keys().unwrap();
     assert!(all.len() >= 60);
     // The tables do not run into each other.
     assert!(all.len() as u64 * APART <= KINDS - KEYS);
     assert!(FieldKind::ALL.len() as u64 * APART <= PLANTS - KINDS);
-    all.extend(FieldPopulation::kinds());
+    all.extend(FieldPopulation::kinds().unwrap());
     let names: BTreeSet<&str> = all.iter().map(|one| &*one.name).collect();
     let seeds: BTreeSet<u64> = all.iter().map(|one| one.first_seed).collect();
     assert_eq!((names.len(), seeds.len()), (all.len(), all.len()));
+}
+
+fn wrong_keys() -> Vec<WrongKey> {
+    WrongKey::all(&Table::read().unwrap())
 }
 
 /// Every number that a bench file can have, by table and key.
@@ -67,7 +70,8 @@ fn numeric_keys() -> BTreeSet<String> {
 
 #[test]
 fn every_number_of_a_bench_file_has_a_row_or_a_reason() {
-    let rows = WrongKey::all().into_iter().map(|row| row.key);
+    let all = wrong_keys();
+    let rows = all.iter().map(|row| &*row.key);
     let columns = ["time_s", "temperature_c"];
     let rows: BTreeSet<&str> = rows.filter(|key| !columns.contains(key)).collect();
     let exempt: BTreeSet<&str> = EXEMPT.iter().map(|(key, _)| *key).collect();
@@ -78,7 +82,7 @@ fn every_number_of_a_bench_file_has_a_row_or_a_reason() {
 
 #[test]
 fn every_row_changes_its_number_and_nothing_else() {
-    for row in WrongKey::all() {
+    for row in wrong_keys() {
         let [(record, bench), (wrong_record, wrong_bench)] = row.record(3).unwrap();
         let bench = bench.unwrap();
         let same_record = record == wrong_record;
@@ -130,13 +134,13 @@ fn every_kind_of_a_plant_has_what_its_name_says() {
     }
 }
 
-const LATITUDE: Right = Right {
-    each: &[&["latitude", "site.latitude"]],
-    near: &["accel_i.scale"],
-    beside: &["accel_i.noise"],
-    silent: Silent::Faint,
-    ..Right::NOTHING
-};
+fn latitude() -> Right {
+    toml::from_str(
+        "each = [['latitude', 'site.latitude']]\nnear = ['accel_i.scale']\n\
+         beside = ['accel_i.noise']\nsilent = 'faint'",
+    )
+    .unwrap()
+}
 
 fn found(id: &str, set: &[&str]) -> Name {
     Name {
@@ -152,7 +156,7 @@ fn judged(right: &Right, names: Vec<Name>) -> Judgement {
 
 #[test]
 fn a_name_is_right_by_itself_only() {
-    let named = |names| judged(&LATITUDE, names);
+    let named = |names| judged(&latitude(), names);
     // An exact equivalent, and noise beside.
     let twin = || found("clock.rate", &[]);
     assert_eq!(named(vec![Name::plain("latitude")]), Judgement::Right);
@@ -176,11 +180,11 @@ fn a_name_is_right_by_itself_only() {
 #[test]
 fn silence_is_right_where_the_record_shows_little() {
     for (right, faint, expected) in [
-        (&LATITUDE, false, Judgement::Wrong),
-        (&LATITUDE, true, Judgement::Right),
-        (&Right::NOTHING, false, Judgement::Right),
+        (latitude(), false, Judgement::Wrong),
+        (latitude(), true, Judgement::Right),
+        (Right::nothing(), false, Judgement::Right),
     ] {
-        assert_eq!(judge(right, None, faint, &Told::default()), expected);
+        assert_eq!(judge(&right, None, faint, &Told::default()), expected);
     }
     // Where nothing is wrong, nothing may be told.
     for (name, expected) in [
@@ -188,22 +192,17 @@ fn silence_is_right_where_the_record_shows_little() {
         (found("accel_x.noise", &[]), Judgement::Wrong),
         (Name::plain("unlisted"), Judgement::NotSettled),
     ] {
-        assert_eq!(judged(&Right::NOTHING, vec![name]), expected);
+        assert_eq!(judged(&Right::nothing(), vec![name]), expected);
     }
 }
 
 #[test]
 fn each_of_several_needs_a_finding_of_its_own_on_its_axis() {
-    const TWO: Right = Right {
-        each: &[&["gyro_i.step"], &["gyro_i.step"]],
-        whole: &["unlisted"],
-        in_set: true,
-        silent: Silent::Never,
-        ..Right::NOTHING
-    };
+    let two = "each = [['gyro_i.step'], ['gyro_i.step']]\nwhole = ['unlisted']\nin_set = true";
+    let two: Right = toml::from_str(two).unwrap();
     let step = || found("gyro_y.step", &[]);
     let in_set = || found("gyro_y.random_walk", &["gyro_y.step"]);
-    let of = |names| judged(&TWO, names);
+    let of = |names| judged(&two, names);
     assert_eq!(of(vec![step(), step()]), Judgement::Right);
     assert_eq!(of(vec![step(), in_set()]), Judgement::Right);
     assert_eq!(of(vec![Name::plain("unlisted")]), Judgement::Right);
@@ -217,20 +216,20 @@ fn each_of_several_needs_a_finding_of_its_own_on_its_axis() {
         Judgement::PhysicalAlone
     );
     assert_eq!(
-        TWO.words(),
+        two.words(),
         "gyro_i.step, and gyro_i.step, or unlisted, in a set"
     );
 }
 
 #[test]
 fn a_wrong_latitude_is_judged_by_its_strength() {
-    let all = FieldPopulation::wrong_keys();
+    let all = FieldPopulation::wrong_keys().unwrap();
     let of = |name: &str| all.iter().find(|one| one.name == name).unwrap();
     // Times that begin at another number change nothing.
     let (same, _) = (of("time_s +- 3600").job)(4).unwrap();
     assert!(same.strength.unwrap() < 0.1, "{same:?}");
     assert_eq!((same.judgement, same.told.len()), (Judgement::Right, 0));
-    let keys = WrongKey::all();
+    let keys = wrong_keys();
     let latitude = keys
         .iter()
         .find(|key| key.name() == "site.latitude_deg +- 0.5");

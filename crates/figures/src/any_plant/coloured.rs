@@ -8,9 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::simulated::{Kind, Run, Setting, Stream, simulate};
 use super::{Of, ROWS, in_turn, prepared};
 use crate::cost::on_one_core;
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::{Context, Row};
+use crate::harness::{Context, Error, Figure, Row};
 
 /// Seed of the records; no constant was tuned on them.
 const COLOURED: u64 = 670_000;

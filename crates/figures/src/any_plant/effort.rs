@@ -8,8 +8,7 @@ use gyrocal_plant_codegen::{Package, Source};
 use super::hidden::{HIDDEN, duffing};
 use super::simulated::{Kind, Setting, simulate};
 use super::{gauges, prepared};
-use crate::error::Error;
-use crate::figure::Figure;
+use crate::harness::{Error, Figure};
 
 /// Most lines of Python and of Rust.
 const MOST_LINES: [usize; 2] = [60, 20];

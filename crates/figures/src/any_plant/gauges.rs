@@ -7,8 +7,7 @@ use gyrocal_plant_codegen::{derive, settings_of_a_command};
 
 use super::prepared;
 use super::simulated::{Kind, Setting, Stream, simulate};
-use crate::error::Error;
-use crate::figure::Figure;
+use crate::harness::{Error, Figure};
 
 /// Seed of the records.
 const SEED: u64 = 400_000;

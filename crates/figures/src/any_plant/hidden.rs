@@ -9,10 +9,9 @@ use serde::{Deserialize, Serialize};
 
 use super::second::{LEAST_GAIN, Second, is_better};
 use super::simulated::{Kind, Setting, Stream, simulate, strength, with_strength};
-use super::{Of, ROWS, in_turn, oracle, prepared};
+use super::{Of, ROWS, holds, in_turn, oracle, prepared};
 use crate::cost::on_one_core;
-use crate::error::Error;
-use crate::harness::{Population, Row};
+use crate::harness::{Error, Population, Row};
 
 #[path = "../../../../examples/duffing/plant.rs"]
 #[rustfmt::skip]
@@ -113,10 +112,7 @@ fn diagnosed(
     };
     let (own, strength) = (setting.hidden.0, strength(&setting));
     let sets: Vec<Vec<String>> = answer.findings.iter().map(set).collect();
-    let holds = answer.findings.iter().zip(&sets).any(|(found, set)| {
-        let mut all = set.iter().map(String::as_str).chain(found.equivalents());
-        all.any(|id| id == own)
-    });
+    let holds = answer.findings.iter().any(|found| holds(found, own));
     let beside_oracle = sets.first().and_then(|set| {
         let lasting = |id: &&String| !oracle::has_onset(plant.tables(), id);
         let oracle = oracle::set_size(&nominal, own, strength)?;

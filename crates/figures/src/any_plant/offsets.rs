@@ -6,10 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use super::second::{Second, is_better};
 use super::simulated::{Kind, Run, Setting, Stream, simulate, with_strength};
-use super::{Of, ROWS, in_turn, prepared};
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::{Context, Row};
+use super::{Of, ROWS, holds, in_turn, prepared};
+use crate::harness::{Context, Error, Figure, Row};
 
 /// Seed of the records; no constant was tuned on them.
 const OFFSETS: u64 = 690_000;
@@ -25,7 +23,7 @@ const LARGEST: f64 = 6.0;
 const STRENGTHS: [f64; 2] = [100.0, 300.0];
 
 /// What is said of a record.
-#[derive(Clone, Serialize, Deserialize)]
+#[derive(Clone, Default, Serialize, Deserialize)]
 struct Said {
     hidden: bool,
     /// Whether the nominal model has a fit: an effect of hundreds of standard deviations may leave it none, which the
@@ -100,11 +98,7 @@ fn said(kind: Kind, seed: u64, plant: &LoadedPlant) -> Result<Said, Error> {
         Err(PlantError::NoFit { .. }) => {
             return Ok(Said {
                 hidden,
-                fits: false,
-                of_time: false,
-                names: false,
-                holds: false,
-                better: None,
+                ..Said::default()
             });
         }
         found => found?,
@@ -116,10 +110,10 @@ fn said(kind: Kind, seed: u64, plant: &LoadedPlant) -> Result<Said, Error> {
         fits: true,
         of_time: answer.findings.iter().any(|one| is_of_time(&one.effect)),
         names: answer.has_findings(),
-        holds: answer.findings.iter().any(|one| {
-            let mut all = one.set().chain(one.equivalents());
-            all.any(|id| id == setting.hidden.0)
-        }),
+        holds: answer
+            .findings
+            .iter()
+            .any(|one| holds(one, setting.hidden.0)),
         better: gain
             .and_then(|gain| gain.validation.as_ref())
             .map(is_better),

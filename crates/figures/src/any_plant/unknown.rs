@@ -5,10 +5,8 @@ use serde::{Deserialize, Serialize};
 
 use super::hidden::settings;
 use super::simulated::{Kind, Setting, Stream, simulate};
-use super::{Of, ROWS, in_turn, prepared};
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::{Context, Row};
+use super::{Of, ROWS, by_kind, far_start, in_turn, prepared, program};
+use crate::harness::{Context, Error, Figure, Row};
 
 /// Seed of the records; no constant was tuned on them.
 const UNKNOWN: u64 = 660_000;
@@ -47,12 +45,7 @@ pub(super) fn figures(context: &Context, plants: &[LoadedPlant]) -> Result<Vec<F
             let record = prepared(known, simulate(&setting, None))?;
             let (held, _) = FittedPlant::nominal(known, record.clone(), &[])?.to_hold()?;
             let best = FittedPlant::nominal(known, record.clone(), &held)?.deviance();
-            let mut random = Stream::new(seed, 4);
-            let mut first = vec![0.0; plant.description().states.len()];
-            let parameters = plant.description().parameters.iter();
-            first.extend(
-                parameters.map(|own| own.value * (random.log_between(1.0 / 3.0, 3.0) - 1.0)),
-            );
+            let first = far_start(plant, Stream::new(seed, 4));
             let fit = FittedPlant::nominal_from(plant, record.clone(), &[], Some(&first));
             let fit = fit.and_then(|fit| {
                 let (held, _) = fit.to_hold()?;
@@ -83,19 +76,14 @@ pub(super) fn figures(context: &Context, plants: &[LoadedPlant]) -> Result<Vec<F
             one.found.is_wrong.then_some(one.found.is_best)
         }),
     ];
-    rows.extend(Kind::ALL.map(|kind| {
-        Row::share(format!("... of {kind:?}"), move |one: &Of<Ended>| {
-            (one.plant == kind as usize).then_some(one.found.is_best)
-        })
-    }));
+    rows.extend(by_kind("... of", |found: &Ended| found.is_best));
     context.measure(&population, &rows)
 }
 
 /// An example plant whose states have no standard deviation before a record.
 fn without_sigmas(kind: Kind) -> Result<LoadedPlant, Error> {
-    let examples = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples");
-    let file = format!("{examples}/{}/plant.json", kind.facts().name);
-    let mut program: serde_json::Value = serde_json::from_str(&std::fs::read_to_string(file)?)?;
+    let text = std::fs::read_to_string(program(kind))?;
+    let mut program: serde_json::Value = serde_json::from_str(&text)?;
     let tables = program["tables"].as_array_mut().into_iter().flatten();
     for table in tables.filter(|table| table["name"] == "plant_states") {
         let rows = table["rows"].as_array_mut().into_iter().flatten();

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde::Deserialize;
 
-use crate::error::Error;
+use crate::harness::Error;
 
 const FILE: &str = "moves.toml";
 

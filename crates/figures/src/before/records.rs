@@ -12,7 +12,7 @@ use gyrocal_truth::{Scenario, Simulation};
 
 use super::results::ran;
 use crate::any_plant::loaded;
-use crate::error::Error;
+use crate::harness::Error;
 
 /// Makes files in the folder of a record:
 ///

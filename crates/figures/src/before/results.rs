@@ -10,7 +10,7 @@ use gyrocal_testkit::{run, workspace};
 use serde_json::{Map, Value};
 
 use super::{Case, records};
-use crate::error::Error;
+use crate::harness::Error;
 
 /// First argument with which this program is the command `gyrocal`.
 const AS_COMMAND: &str = "as-gyrocal";

@@ -3,10 +3,7 @@
 use gyrocal_calibration::{Options, Run, calibrate_runs};
 use gyrocal_truth::{Coefficients, InitialAttitude, Scenario, simulate};
 
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::sources::{CALIBRATION, of};
-use crate::harness::{Context, Population, Row};
+use crate::harness::{CALIBRATION, Context, Error, Figure, Population, Row, of};
 
 const ONE_DEG: [f64; 3] = [0.0; 3];
 const OTHER_DEG: [f64; 3] = [90.0, 45.0, 0.0];

@@ -9,7 +9,7 @@ use gyrocal_statistics::{NORMAL_97_5, format};
 use gyrocal_testkit::workspace;
 use gyrocal_truth::{Hidden, InitialAttitude, Scenario, Simulation, Temperature, simulate};
 
-use crate::error::Error;
+use crate::harness::Error;
 use crate::values::Values;
 
 /// Interval of rows, s: enough points for a curve, and a small file.

@@ -13,10 +13,10 @@ use gyrocal_testkit::noise_faults::{Fault, FaultyRecord, faulty_record};
 use gyrocal_truth::{Population as Platforms, Term};
 use serde::{Deserialize, Serialize};
 
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::sources::{DIAGNOSIS, of};
-use crate::harness::{Context, Population, Row};
+use crate::harness::{Context, DIAGNOSIS, Error, Figure, Population, Row, Sources, of};
+
+/// What can move the results.
+const SOURCES: Sources = of(DIAGNOSIS, &[file!()]);
 
 /// Seed of the platforms and their records.
 const PLATFORMS: u64 = 20;
@@ -117,17 +117,15 @@ fn audits(
     fault: Fault,
     term: Option<fn() -> Term>,
 ) -> Population<'static, Audited> {
-    Population {
-        name: format!("audit {name}"),
-        first: 0,
-        full,
-        small,
-        sources: of(DIAGNOSIS, &[file!()]),
-        job: Box::new(move |number| {
+    Population::new(
+        format!("audit {name}"),
+        [0, full, small],
+        SOURCES,
+        move |number| {
             let terms: Vec<Term> = term.iter().map(|make| make()).collect();
             audited(&faulty_record(&three_days(), number, fault, &terms))
-        }),
-    }
+        },
+    )
 }
 
 /// Three days with a row each minute, at any latitude and attitude, with drift.
@@ -253,26 +251,19 @@ struct Whole {
 
 /// Whole diagnoses of the first two kinds in turn; their numbers are above those of the audits.
 fn wholes() -> Population<'static, Whole> {
-    Population {
-        name: "whole noise".to_owned(),
-        first: 10_000,
-        full: 100,
-        small: 6,
-        sources: of(DIAGNOSIS, &[file!()]),
-        job: Box::new(|number| {
-            let (_, fault) = KINDS[(number % 2) as usize];
-            let case = faulty_record(&three_days(), number, fault, &[]);
-            let bench = three_days().scenario(number).bench();
-            let found = diagnose(&case.record, &bench, &DiagnoseOptions::default())?.result;
-            let noise = found.of_kind(FindingKind::Noise);
-            let mut noise: Vec<&str> = noise.map(|finding| finding.effect.as_str()).collect();
-            noise.sort_unstable();
-            Ok(Whole {
-                is_physical: found.causes().next().is_some(),
-                is_right: noise == expected(fault),
-            })
-        }),
-    }
+    Population::new("whole noise", [10_000, 100, 6], SOURCES, |number| {
+        let (_, fault) = KINDS[(number % 2) as usize];
+        let case = faulty_record(&three_days(), number, fault, &[]);
+        let bench = three_days().scenario(number).bench();
+        let found = diagnose(&case.record, &bench, &DiagnoseOptions::default())?.result;
+        let noise = found.of_kind(FindingKind::Noise);
+        let mut noise: Vec<&str> = noise.map(|finding| finding.effect.as_str()).collect();
+        noise.sort_unstable();
+        Ok(Whole {
+            is_physical: found.causes().next().is_some(),
+            is_right: noise == expected(fault),
+        })
+    })
 }
 
 fn of_wholes() -> [Row<'static, Whole>; 2] {

@@ -15,8 +15,7 @@ use gyrocal_truth::{Population, Scenario, Temperature, simulate};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-use crate::error::Error;
-use crate::figure::Figure;
+use crate::harness::{Error, Figure};
 
 /// Seed of the population, and how many scenarios of it are compared.
 const POPULATION: u64 = 8;

@@ -6,9 +6,10 @@ use gyrocal_record::Record;
 use jiff::Timestamp;
 use jiff::civil::DateTime;
 use jiff::tz::Offset;
+use serde::Deserialize;
 
 /// Encodings of a text.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
 pub(super) enum Encoding {
     Utf8,
     Utf8Mark,
@@ -19,68 +20,79 @@ pub(super) enum Encoding {
 }
 
 /// Forms of the times.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq)]
 pub(super) enum Times {
     /// Number of seconds in a unit from an origin \[s since 1970\], `NaN` of an elapsed time, with decimals.
     Number(f64, f64, usize),
     /// Fields that are dates and times by `strftime`, with the offset of the clock \[h\].
-    Fields(&'static [&'static str], i8),
+    Fields(Vec<String>, i8),
     /// Week and seconds of GPS.
     Gps,
 }
 
+/// Titles of the fields of the time, of accelerometers and of the temperature.
+pub(super) type Titles = (Vec<String>, [String; 3], String);
+
 /// Separators, encoding, names, units and form of a file.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub(super) struct Dialect {
-    pub(super) name: &'static str,
-    pub(super) separator: &'static str,
+    pub(super) name: String,
+    pub(super) separator: String,
     pub(super) decimal_comma: bool,
     pub(super) quoted: bool,
     pub(super) encoding: Encoding,
-    pub(super) line_end: &'static str,
+    pub(super) line_end: String,
     pub(super) times: Times,
-    /// Titles of the fields of the time, three accelerometers and the temperature; none without a header.
-    pub(super) titles: Option<(&'static [&'static str], [&'static str; 3], &'static str)>,
+    pub(super) header: bool,
+    /// Titles of the fields of the time, three accelerometers and the temperature.
+    pub(super) titles: Titles,
     /// Units in a line below the header: time, accelerometers, temperature.
-    pub(super) units: Option<[&'static str; 3]>,
+    pub(super) units: Option<[String; 3]>,
     /// Units of 1 g, and the value at zero.
     pub(super) scale: f64,
     pub(super) zero: f64,
     pub(super) decimals: usize,
     /// Lines in front of the header.
-    pub(super) preamble: &'static str,
+    pub(super) preamble: String,
     /// Sign in front of the header and of a line in the middle.
-    pub(super) comment: &'static str,
+    pub(super) comment: String,
     /// Temperature: factor and offset of °C.
     pub(super) temperature: Option<[f64; 2]>,
     /// Word for a missing value of each fiftieth row.
-    pub(super) missing: Option<&'static str>,
+    pub(super) missing: Option<String>,
     /// Text behind the last field of a row: a separator, an empty field.
-    pub(super) behind: &'static str,
+    pub(super) behind: String,
     pub(super) repeats_header: bool,
 }
 
-/// A plain file: commas, points, seconds, g.
-pub(super) const PLAIN: Dialect = Dialect {
-    name: "plain",
-    separator: ",",
-    decimal_comma: false,
-    quoted: false,
-    encoding: Encoding::Utf8,
-    line_end: "\n",
-    times: Times::Number(1.0, f64::NAN, 1),
-    titles: Some((&["t"], ["ax", "ay", "az"], "temp")),
-    units: None,
-    scale: 1.0,
-    zero: 0.0,
-    decimals: 8,
-    preamble: "",
-    comment: "",
-    temperature: None,
-    missing: None,
-    behind: "",
-    repeats_header: false,
-};
+impl Default for Dialect {
+    /// A plain file: commas, points, seconds, g.
+    fn default() -> Self {
+        let text = str::to_owned;
+        Self {
+            name: text("plain"),
+            separator: text(","),
+            decimal_comma: false,
+            quoted: false,
+            encoding: Encoding::Utf8,
+            line_end: text("\n"),
+            times: Times::Number(1.0, f64::NAN, 1),
+            header: true,
+            titles: (vec![text("t")], ["ax", "ay", "az"].map(text), text("temp")),
+            units: None,
+            scale: 1.0,
+            zero: 0.0,
+            decimals: 8,
+            preamble: String::new(),
+            comment: String::new(),
+            temperature: None,
+            missing: None,
+            behind: String::new(),
+            repeats_header: false,
+        }
+    }
+}
 
 /// Origin of the GPS weeks \[s since 1970\], and what GPS is ahead of UTC \[s\].
 const GPS_S: f64 = 315_964_800.0;
@@ -94,7 +106,7 @@ impl Dialect {
     }
 
     fn text(&self, record: &Record, first_s: f64) -> String {
-        let mut text = self.preamble.replace('\n', self.line_end);
+        let mut text = self.preamble.replace('\n', &self.line_end);
         let header = self.header();
         text += &header;
         for row in 0..record.len() {
@@ -107,10 +119,12 @@ impl Dialect {
             }
             let mut fields = self.time(first_s + record.time_s[row] - record.time_s[0], first_s);
             for (axis, force) in record.accel_g[row].iter().enumerate() {
-                fields.push(match self.missing.filter(|_| row % 50 == 7 + axis) {
-                    Some(word) => word.to_owned(),
-                    None => self.number(force * self.scale + self.zero, self.decimals),
-                });
+                fields.push(
+                    match self.missing.as_ref().filter(|_| row % 50 == 7 + axis) {
+                        Some(word) => word.clone(),
+                        None => self.number(force * self.scale + self.zero, self.decimals),
+                    },
+                );
             }
             if let (Some([factor, offset]), Some(celsius)) =
                 (self.temperature, &record.temperature_c)
@@ -131,29 +145,26 @@ impl Dialect {
             }
         };
         let fields: Vec<String> = fields.iter().map(quote).collect();
-        fields.join(self.separator) + self.behind + self.line_end
+        fields.join(&self.separator) + &self.behind + &self.line_end
     }
 
     fn header(&self) -> String {
-        let Some((times, force, temperature)) = self.titles else {
+        if !self.header {
             return String::new();
-        };
-        let mut titles: Vec<String> = times
-            .iter()
-            .chain(&force)
-            .map(|title| (*title).to_owned())
-            .collect();
-        titles.extend(self.temperature.map(|_| temperature.to_owned()));
+        }
+        let (times, force, temperature) = &self.titles;
+        let mut titles: Vec<String> = times.iter().chain(force).cloned().collect();
+        titles.extend(self.temperature.map(|_| temperature.clone()));
         let sign = if self.comment.is_empty() || self.units.is_some() {
             String::new()
         } else {
             format!("{} ", self.comment)
         };
         let mut text = sign + &self.line(&titles);
-        if let Some([time, force, temperature]) = self.units {
-            let mut units = vec![time.to_owned(); times.len()];
-            units.extend(vec![force.to_owned(); 3]);
-            units.extend(self.temperature.map(|_| temperature.to_owned()));
+        if let Some([time, force, temperature]) = &self.units {
+            let mut units = vec![time.clone(); times.len()];
+            units.extend(vec![force.clone(); 3]);
+            units.extend(self.temperature.map(|_| temperature.clone()));
             text += &self.line(&units);
         }
         text
@@ -170,23 +181,27 @@ impl Dialect {
 
     /// Fields of a time \[s since 1970\].
     fn time(&self, time_s: f64, first_s: f64) -> Vec<String> {
-        match self.times {
+        match &self.times {
             Times::Number(unit_s, origin_s, decimals) => {
-                let origin_s = if origin_s.is_nan() { first_s } else { origin_s };
-                vec![self.number((time_s - origin_s) / unit_s, decimals)]
+                let origin_s = if origin_s.is_nan() {
+                    first_s
+                } else {
+                    *origin_s
+                };
+                vec![self.number((time_s - origin_s) / unit_s, *decimals)]
             }
             Times::Fields(formats, ahead_h) => {
                 let stamp = Timestamp::from_nanosecond((time_s * 1e3).round() as i128 * 1_000_000)
                     .unwrap_or_default();
-                let offset = Offset::constant(ahead_h);
+                let offset = Offset::constant(*ahead_h);
                 let civil: DateTime = offset.to_datetime(stamp);
                 let zoned = offset
                     .to_timestamp(civil)
                     .map(|at| at.to_zoned_datetime(offset.to_time_zone()));
-                let write = |format: &&str| {
+                let write = |format: &String| {
                     zoned
                         .as_ref()
-                        .map_or_else(|_| String::new(), |at| at.strftime(*format).to_string())
+                        .map_or_else(|_| String::new(), |at| at.strftime(format).to_string())
                 };
                 formats.iter().map(write).collect()
             }

@@ -8,8 +8,7 @@ use gyrocal_record::Record;
 
 use super::RECORD;
 use super::target::{Tools, build_on_host};
-use crate::error::Error;
-use crate::figure::Figure;
+use crate::harness::{Error, Figure};
 use crate::kernel::instructions::{output, root};
 
 const PACKAGE: &str = "crates/c-api";

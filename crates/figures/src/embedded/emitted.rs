@@ -6,8 +6,7 @@ use gyrocal_emit::{Emission, Extension, Number};
 use gyrocal_record::ModelFile;
 
 use super::target::Tools;
-use crate::error::Error;
-use crate::figure::Figure;
+use crate::harness::{Error, Figure};
 use crate::kernel::instructions::root;
 
 const MANIFEST: &str = "\

@@ -5,8 +5,7 @@ use std::process::Command;
 
 use super::RECORD;
 use super::target::{Tools, build_on_host};
-use crate::error::Error;
-use crate::figure::Figure;
+use crate::harness::{Error, Figure};
 use crate::kernel::instructions::output;
 
 const PACKAGE: &str = "tests/firmware";

@@ -7,10 +7,7 @@ use gyrocal::{
 use gyrocal_evaluation::Statistic;
 use gyrocal_truth::{Population, Simulation, simulate};
 
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::sources::{Sources, of};
-use crate::harness::{self, Context, Row};
+use crate::harness::{self, Context, Error, Figure, Row, Sources, of};
 
 const DAY_S: f64 = 86_400.0;
 const DIFFERENCE_SEED: u64 = 20_261_122;

@@ -5,7 +5,7 @@ use std::process::Command;
 
 use gyrocal_testkit::{Tool, tool};
 
-use crate::error::Error;
+use crate::harness::Error;
 use crate::kernel::instructions::{output, root};
 
 const TRIPLE: &str = "thumbv7em-none-eabihf";

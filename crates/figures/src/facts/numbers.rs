@@ -12,14 +12,13 @@ use std::collections::BTreeMap;
 
 use gyrocal_testkit::workspace;
 use rayon::prelude::*;
+use serde::Deserialize;
 
 use super::lines::{Line, of_page};
 use super::values::leading;
 use super::{Answer, PRINTED, answers};
 use crate::before::moves::matches;
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::Context;
+use crate::harness::{Context, Error, Figure};
 use rules::{RULES, SAME};
 
 /// Numbers from the least to the largest.
@@ -50,37 +49,17 @@ struct Part {
     tables: Vec<Table>,
 }
 
-/// Answers whose pages the facts do not have, each by what makes its files and its command.
-const FURTHER: [(&[&str], &str); 7] = [
-    (
-        &["platform record 1 0 48 30"],
-        "report %record.csv --bench %record.toml --uncertainty --out %page.html",
-    ),
-    (
-        &["platform 1 2 0 36", "platform 2 2 1 36"],
-        "report %1.csv %2.csv --bench %1.toml --bench %2.toml --uncertainty --out %page.html",
-    ),
-    (
-        &["platform record 3 0 48 30"],
-        "calibrate %record.csv --bench %record.toml --with gyro_y.g_z --report %page.html",
-    ),
-    (
-        &["platform 1 4 0 36", "platform 2 4 1 36"],
-        "calibrate %1.csv %2.csv --bench %1.toml --bench %2.toml --report %page.html",
-    ),
-    (
-        &["platform 1 5 0 36 30", "platform 2 5 1 36 30"],
-        "plan %1.csv %2.csv --bench %1.toml --bench %2.toml --report %page.html",
-    ),
-    (
-        &["white 1 20000"],
-        "allan %rate.csv --columns rate --rate-hz 10 --unit deg/h --report %page.html",
-    ),
-    (
-        &[],
-        "monte-carlo @examples/data/three_days.scenario.toml --seeds 0..6 --report %page.html",
-    ),
-];
+/// Answers whose pages the facts do not have.
+#[derive(Deserialize)]
+struct Further {
+    further: Vec<FurtherAnswer>,
+}
+
+#[derive(Deserialize)]
+struct FurtherAnswer {
+    make: Vec<String>,
+    run: String,
+}
 
 /// Kinds of answers of the small version, the first of each.
 const SMALL: [&str; 3] = ["effect 1", "calibration 1", "duffing 1"];
@@ -93,11 +72,16 @@ const SMALL: [&str; 3] = ["effect 1", "calibration 1", "duffing 1"];
 pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
     let (small, named) = (context.is_small(), &context.named);
     let mut answers = answers(&workspace().join("tests/data/facts"), small)?;
-    answers.extend(FURTHER.map(|(make, run)| Answer {
-        key: format!("further {}", run.split(" -").next().unwrap_or_default()),
-        make: make.iter().map(ToString::to_string).collect(),
-        run: run.to_owned(),
-    }));
+    let Further { further } = toml::from_str(include_str!("numbers/further.toml"))?;
+    answers.extend(
+        further
+            .into_iter()
+            .map(|FurtherAnswer { make, run }| Answer {
+                key: format!("further {}", run.split(" -").next().unwrap_or_default()),
+                make,
+                run,
+            }),
+    );
     answers.retain(|one| match named.is_empty() {
         true => !small || SMALL.contains(&&*one.key),
         false => named.contains(&one.key),

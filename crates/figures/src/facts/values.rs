@@ -1,5 +1,7 @@
 //! Values in a line: numbers with their units, ids, commands.
 
+use crate::values::{length_of_number, parsed};
+
 /// Units beside those that have `/` or `^`.
 const UNITS: &str = "% deg g µg mg ng rad arcsec arcmin s min h d day days Hz K C m kg N V A W rows nats sigma ppm counts";
 
@@ -24,16 +26,10 @@ pub(super) struct Number {
 impl Number {
     fn new(digits: &str, unit: &str) -> Option<Self> {
         let digits = digits.trim_start_matches('+');
-        let (mantissa, exponent) = digits.split_once('e').unwrap_or((digits, "0"));
-        let exponent: i32 = exponent.parse().ok()?;
-        let decimals = mantissa
-            .split_once('.')
-            .map_or(0, |(_, decimals)| decimals.len());
+        let (value, last) = parsed(digits)?;
         Some(Self {
-            value: digits.parse().ok()?,
-            last: digits
-                .contains(['.', 'e'])
-                .then(|| exponent - decimals as i32),
+            value,
+            last,
             digits: digits.to_owned(),
             unit: unit.to_owned(),
         })
@@ -116,29 +112,6 @@ pub(super) fn numbers(text: &str) -> Vec<(usize, Number)> {
         begins = length == 0 && (letter.is_whitespace() || "([=<>≤≥≈~±,;:→".contains(letter));
     }
     found
-}
-
-/// Length of the number that a text begins with: sign, digits, decimals, exponent.
-fn length_of_number(text: &str) -> usize {
-    let digits = |from: usize| {
-        let tail = text.get(from..).unwrap_or_default();
-        tail.len() - tail.trim_start_matches(|c: char| c.is_ascii_digit()).len()
-    };
-    let sign = usize::from(text.starts_with(['+', '-']));
-    let mut length = sign + digits(sign);
-    if length == sign {
-        return 0;
-    }
-    if text[length..].starts_with('.') && digits(length + 1) > 0 {
-        length += 1 + digits(length + 1);
-    }
-    if let Some(exponent) = text[length..].strip_prefix('e') {
-        let from = length + 1 + usize::from(exponent.starts_with(['+', '-']));
-        if digits(from) > 0 {
-            length = from + digits(from);
-        }
-    }
-    length
 }
 
 /// The number that a text begins with, and what follows; `<` and `>` make it a bound.

@@ -2,9 +2,7 @@
 //! each stage.
 
 use super::{Measured, measured_once};
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::Context;
+use crate::harness::{Context, Error, Figure};
 
 /// Short records whose workers are killed, and records of three days whose stages are timed.
 const KILLED: &str = "600";

@@ -8,9 +8,7 @@ use gyrocal_statistics::deviates::Draw;
 use serde::{Deserialize, Serialize};
 
 use super::fleets;
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::{COVERAGE, COVERAGE_REASON, Context, Row};
+use crate::harness::{COVERAGE, COVERAGE_REASON, Context, Error, Figure, Row};
 
 /// Numbers of units of the fleets of the coverage, and of those with records over years.
 const UNITS: [u64; 3] = [5, 20, 100];

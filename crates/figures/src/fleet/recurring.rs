@@ -5,7 +5,7 @@
 //! and tests the likelihood ratio of the one cause at the level q/m that the search demands of a single
 //! discovery among m effects.
 
-use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
+use gyrocal_evaluation::diagnosed;
 use gyrocal_fleet::recurrence::{
     Injected, RecurrenceOptions, ScoreSimulator, UnitRecords, oracle_finds, recurring,
 };
@@ -16,9 +16,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::fleets;
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::{Context, Row};
+use crate::harness::{Context, Error, Figure, Row};
 
 const UNITS: usize = 200;
 const STRENGTHS: [f64; 3] = [1.0, 2.0, 3.0];
@@ -41,9 +39,7 @@ pub(super) fn scenario(number: u64) -> Scenario {
 /// Scores of clean records.
 fn simulators(records: u64) -> Result<Vec<ScoreSimulator>, Error> {
     let all = (0..records).into_par_iter().map(|number| {
-        let simulated = simulate(&scenario(number))?;
-        let options = DiagnoseOptions::default();
-        let scores = diagnose(&simulated.record, &simulated.bench, &options)?.scores;
+        let scores = diagnosed(&simulate(&scenario(number))?)?.scores;
         Ok(ScoreSimulator::new(scores))
     });
     let all: Vec<Option<ScoreSimulator>> = all.collect::<Result<_, Error>>()?;

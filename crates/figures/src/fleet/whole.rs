@@ -1,8 +1,7 @@
 //! A fleet of records from end to end: simulated, diagnosed, its scores sent as bytes, and looked at.
 
 use gyrocal_answer::read_text;
-use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
-use gyrocal_evaluation::inject;
+use gyrocal_evaluation::{diagnosed, inject};
 use gyrocal_fleet::{FleetOptions, FleetRecord, RecordName, summarise, to_bytes};
 use gyrocal_record::SourceText;
 use gyrocal_statistics::deviates::Draw;
@@ -11,9 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use super::fleets;
 use super::recurring::scenario;
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::Context;
+use crate::harness::{Context, Error, Figure};
 
 /// Share of the units that have the cause, its strength, and the cause.
 const SHARE: f64 = 0.2;
@@ -46,10 +43,9 @@ fn sent(number: u64, with_cause: bool) -> Result<Sent, Error> {
         };
     }
     let simulated = simulate(&scenario)?;
-    let options = DiagnoseOptions::default();
-    let diagnosed = diagnose(&simulated.record, &simulated.bench, &options)?;
-    let result = serde_json::to_string(&diagnosed.result)?;
-    let scores = to_bytes(&diagnosed.scores);
+    let found = diagnosed(&simulated)?;
+    let result = serde_json::to_string(&found.result)?;
+    let scores = to_bytes(&found.scores);
     // What arrives is what was sent.
     read_text(&SourceText::new(&result, "result")?)?;
     Ok(Sent {

@@ -4,8 +4,7 @@
 use std::path::Path;
 use std::process::Command;
 
-use crate::error::Error;
-use crate::figure::Figure;
+use crate::harness::{Error, Figure};
 use crate::kernel::instructions::{cargo, output, root};
 
 const SCRIPT: &str = include_str!("operations.py");

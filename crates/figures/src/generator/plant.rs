@@ -7,8 +7,7 @@ use std::time::{Duration, Instant};
 
 use gyrocal_codegen::build::{Derivation, Settings};
 
-use crate::error::Error;
-use crate::figure::Figure;
+use crate::harness::{Error, Figure};
 use crate::kernel::instructions::{cargo, output, root};
 
 const EXAMPLES: [&str; 2] = ["cart_pole", "quadrotor"];

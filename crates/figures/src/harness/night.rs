@@ -47,11 +47,11 @@ impl Night {
             .until(deadline);
         let (mut all, mut open) = (Vec::new(), Vec::new());
         for topic in topics {
-            if !self.topics.is_empty() && !self.topics.iter().any(|name| name == topic.name) {
+            if !self.topics.is_empty() && !self.topics.contains(&topic.name) {
                 continue;
             }
             let begin_s = process_s();
-            for part in topic.parts {
+            for part in &topic.parts {
                 let name = format!("{} --part {}", topic.name, part.name);
                 if deadline.is_some_and(|deadline| Instant::now() > deadline) {
                     open.push(name);

@@ -28,7 +28,7 @@ pub(crate) fn path(topic: &str) -> PathBuf {
 pub(crate) fn section(part: &Part, command: &str, table: &str) -> Result<String, Error> {
     let (commit, sources) = (commit(&workspace()), part.sources.hash()?);
     let processor = timing::processor();
-    let about = part.about;
+    let about = &part.about;
     Ok(format!(
         "{about}\n\nPrinted by `{command}` of commit {commit}, sources {sources}, on {processor}. Times and \
          ratios of times are those of that machine, and instruction counts those of its compiler. All else \

@@ -64,23 +64,17 @@ impl<'a, R> Row<'a, R> {
 
     /// The mean of one number a record.
     pub(crate) fn mean(name: impl Into<String>, of: impl Fn(&R) -> Option<f64> + 'a) -> Self {
-        Self::new(name, move |records| {
-            Statistic::Mean(records.iter().filter_map(&of).collect())
-        })
+        Self::of_each(name, of, Statistic::Mean)
     }
 
     /// The median of one number a record.
     pub(crate) fn median(name: impl Into<String>, of: impl Fn(&R) -> Option<f64> + 'a) -> Self {
-        Self::new(name, move |records| {
-            Statistic::Median(records.iter().filter_map(&of).collect())
-        })
+        Self::of_each(name, of, Statistic::Median)
     }
 
     /// The ratio of the means of two numbers a record.
     pub(crate) fn ratio(name: impl Into<String>, of: impl Fn(&R) -> Option<[f64; 2]> + 'a) -> Self {
-        Self::new(name, move |records| {
-            Statistic::Ratio(records.iter().filter_map(&of).collect())
-        })
+        Self::of_each(name, of, Statistic::Ratio)
     }
 
     /// The ratio of the root mean squares of two numbers a record.
@@ -88,8 +82,19 @@ impl<'a, R> Row<'a, R> {
         name: impl Into<String>,
         of: impl Fn(&R) -> Option<[f64; 2]> + 'a,
     ) -> Self {
+        Self::of_each(name, of, Statistic::RmsRatio)
+    }
+
+    fn of_each<T>(
+        name: impl Into<String>,
+        of: impl Fn(&R) -> Option<T> + 'a,
+        make: fn(Vec<T>) -> Statistic,
+    ) -> Self
+    where
+        T: 'a,
+    {
         Self::new(name, move |records| {
-            Statistic::RmsRatio(records.iter().filter_map(&of).collect())
+            make(records.iter().filter_map(&of).collect())
         })
     }
 

@@ -7,6 +7,7 @@ use std::process::Command;
 use std::sync::{Mutex, PoisonError};
 
 use gyrocal_testkit::workspace;
+use serde::Deserialize;
 use sha2::{Digest as _, Sha256};
 use toml::{Table, Value};
 
@@ -52,8 +53,35 @@ pub(crate) const JUDGING: Sources = of(
     ],
 );
 
+/// Groups of packages by the names that tables give them.
+const GROUPS: [(&str, &[&str]); 6] = [
+    ("filter", FILTER),
+    ("calibration", CALIBRATION),
+    ("diagnosis", DIAGNOSIS),
+    ("instruments", INSTRUMENTS),
+    ("plants", PLANTS),
+    ("command", COMMAND),
+];
+
+/// Entries of a table of topics or of slow sections.
+#[derive(Deserialize)]
+pub(crate) struct Listed<T> {
+    #[serde(alias = "topic", alias = "section")]
+    pub(crate) all: Vec<T>,
+}
+
+/// Sources in an entry: a group or packages, and files.
+#[derive(Deserialize)]
+struct ListedSources {
+    group: Option<String>,
+    #[serde(default)]
+    packages: Vec<String>,
+    files: Vec<String>,
+}
+
 /// What a result depends on, from the root of the workspace.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(try_from = "ListedSources")]
 pub(crate) struct Sources {
     /// Folders of packages: all of their files, and those that they depend on by path.
     pub(crate) packages: &'static [&'static str],
@@ -67,6 +95,28 @@ pub(crate) const fn of(
     files: &'static [&'static str],
 ) -> Sources {
     Sources { packages, files }
+}
+
+impl TryFrom<ListedSources> for Sources {
+    type Error = String;
+
+    fn try_from(listed: ListedSources) -> Result<Self, String> {
+        // Tables are there as long as the program.
+        let kept = |all: Vec<String>| -> &'static [&'static str] {
+            let all = all.into_iter().map(|one| &*one.leak());
+            all.collect::<Vec<&'static str>>().leak()
+        };
+        let packages = match listed.group {
+            Some(group) => {
+                let mut groups = GROUPS.iter();
+                let own = groups.find(|(name, _)| *name == group);
+                own.map(|(_, packages)| *packages)
+                    .ok_or_else(|| format!("found no group `{group}`"))?
+            }
+            None => kept(listed.packages),
+        };
+        Ok(of(packages, kept(listed.files)))
+    }
 }
 
 impl Sources {

@@ -1,33 +1,52 @@
 //! Topics of figures and their parts.
 
+use serde::Deserialize;
+
 use super::context::Context;
 use super::pages;
 use super::sources::Sources;
 use crate::error::Error;
 use crate::figure::{Figure, table_of};
 
+/// What measures the figures of a part.
+pub(crate) type Measure = fn(&Context) -> Result<Vec<Figure>, Error>;
+
+/// Makes the text above a table from its figures.
+pub(crate) type Introduce = fn(&[Figure]) -> String;
+
 /// A topic: a page of figures.
+#[derive(Deserialize)]
 pub(crate) struct Topic {
     /// Its name on the command line and of its page.
-    pub(crate) name: &'static str,
+    pub(crate) name: String,
     /// What it measures, in one line.
-    pub(crate) about: &'static str,
-    pub(crate) parts: &'static [Part],
+    pub(crate) about: String,
+    #[serde(rename = "part")]
+    pub(crate) parts: Vec<Part>,
 }
 
 /// A part of a topic: a section of its page.
+#[derive(Deserialize)]
 pub(crate) struct Part {
     /// Its name on the command line and its heading.
-    pub(crate) name: &'static str,
+    pub(crate) name: String,
     /// What it measures, in one line.
-    pub(crate) about: &'static str,
-    /// Whether the gate has its small version; of others a slow section has it, or nothing.
-    pub(crate) small: bool,
+    pub(crate) about: String,
+    /// Whether it is left to a slow section, or to nothing: the gate has the small version of others.
+    #[serde(default)]
+    pub(crate) slow: bool,
     /// What can move its figures, beside this program.
+    #[serde(flatten)]
     pub(crate) sources: Sources,
-    pub(crate) figures: fn(&Context) -> Result<Vec<Figure>, Error>,
-    /// Text above the table; may be empty.
-    pub(crate) introduction: fn(&[Figure]) -> String,
+    #[serde(skip, default = "unmeasured")]
+    pub(crate) figures: Measure,
+    #[serde(skip)]
+    pub(crate) introduction: Option<Introduce>,
+}
+
+/// Measures nothing.
+fn unmeasured() -> Measure {
+    |_| Ok(Vec::new())
 }
 
 impl Topic {
@@ -40,15 +59,15 @@ impl Topic {
         mut told: impl FnMut(&Part, &[Figure]) -> Result<(), Error>,
     ) -> Result<Vec<Figure>, Error> {
         if let Some(unknown) = parts.iter().find(|name| self.part(name).is_none()) {
-            let known: Vec<&str> = self.parts.iter().map(|part| part.name).collect();
+            let known: Vec<&str> = self.parts.iter().map(|part| &*part.name).collect();
             let known = known.join(", ");
-            let topic = self.name;
+            let topic = &self.name;
             return Err(format!("{topic} has no part `{unknown}`; expected one of {known}").into());
         }
         let mut figures = Vec::new();
-        for part in self.parts {
-            let asked = parts.iter().any(|name| name == part.name);
-            if !asked && (!parts.is_empty() || (context.is_small() && !part.small)) {
+        for part in &self.parts {
+            let asked = parts.contains(&part.name);
+            if !asked && (!parts.is_empty() || (context.is_small() && part.slow)) {
                 continue;
             }
             let of_part = (part.figures)(context)?;
@@ -69,11 +88,11 @@ impl Topic {
         command: &str,
         figures: &[Figure],
     ) -> Result<(), Error> {
-        let names: Vec<&str> = self.parts.iter().map(|part| part.name).collect();
-        let introduction = (part.introduction)(figures);
+        let names: Vec<&str> = self.parts.iter().map(|part| &*part.name).collect();
+        let introduction = part.introduction.map_or_else(String::new, |of| of(figures));
         let table = table_of(figures);
         let table = [introduction.trim_end(), &table].join("\n\n");
         let body = pages::section(part, command, table.trim_start())?;
-        pages::write_section(self.name, part.name, &names, &body)
+        pages::write_section(&self.name, &part.name, &names, &body)
     }
 }

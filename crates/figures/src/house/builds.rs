@@ -8,8 +8,7 @@ use std::time::Instant;
 use gyrocal_testkit::{cargo, run};
 use serde::Deserialize;
 
-use crate::error::Error;
-use crate::figure::Figure;
+use crate::harness::{Error, Figure};
 
 /// The commit that a clean build is compared with.
 const EARLIER: &str = "57c517e1";

@@ -7,8 +7,7 @@ use std::path::Path;
 use gyrocal::EFFECTS;
 use gyrocal_testkit::snapshot;
 
-use crate::error::Error;
-use crate::figure::Figure;
+use crate::harness::{Error, Figure};
 
 /// Lines that a file may have.
 const FILE_LINES: usize = 400;

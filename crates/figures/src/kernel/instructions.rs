@@ -11,8 +11,7 @@ use gyrocal_testkit::{Tool, tool};
 use serde::{Deserialize, Serialize};
 
 use super::RULES;
-use crate::error::Error;
-use crate::figure::Figure;
+use crate::harness::{Error, Figure};
 
 const COMMITTED: &str = "tests/data/numerics/instructions.toml";
 /// A multiple of 64, the number of turns after which a chart is orthonormalised.

@@ -12,8 +12,7 @@ use gyrocal_testkit::timing::{medians, seconds, target_features};
 
 use super::RULES;
 use super::instructions::{cargo, output, root};
-use crate::error::Error;
-use crate::figure::Figure;
+use crate::harness::{Error, Figure};
 
 const ROUNDS: usize = 501;
 

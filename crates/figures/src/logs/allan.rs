@@ -9,9 +9,7 @@ use gyrocal_truth::units::sensor_noise::{Filter, SensorNoise};
 use serde::{Deserialize, Serialize};
 
 use super::logs;
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::{COVERAGE, COVERAGE_REASON, Context, Row};
+use crate::harness::{COVERAGE, COVERAGE_REASON, Context, Error, Figure, Row};
 
 /// Purpose of the stream of draws.
 const LEVELS: u64 = 1801;

@@ -15,9 +15,7 @@ use serde::{Deserialize, Serialize};
 
 use super::logs;
 use super::unit::DEG_PER_H;
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::{Context, Row};
+use crate::harness::{Context, Error, Figure, Row};
 
 /// Purpose of the stream of draws.
 const POSITIONS: u64 = 1806;

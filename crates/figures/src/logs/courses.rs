@@ -9,9 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::unit::{DEG_PER_H, Unit};
 use super::{described, logs};
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::{COVERAGE, COVERAGE_REASON, Context, Row};
+use crate::harness::{COVERAGE, COVERAGE_REASON, Context, Error, Figure, Row};
 
 /// Purpose of the stream of draws.
 const COURSES: u64 = 1807;

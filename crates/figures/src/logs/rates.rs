@@ -11,9 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use super::unit::{ACCEL_NOISE_G, DEG_PER_H, EARTH_DEG_PER_H, LEVEL_RAD, Unit};
 use super::{OVER_PROJECTION, OVER_PROJECTION_REASON, described, logs};
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::{COVERAGE, COVERAGE_REASON, Context, Row};
+use crate::harness::{COVERAGE, COVERAGE_REASON, Context, Error, Figure, Row};
 
 /// Purpose of the stream of draws.
 const ERRORS: u64 = 1805;

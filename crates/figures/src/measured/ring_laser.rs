@@ -9,7 +9,7 @@ use gyrocal_instruments::strapdown::{ImportReport, ImportSettings, Imported, imp
 use gyrocal_instruments::{Description, Log};
 
 use super::{Measured, data};
-use crate::error::Error;
+use crate::harness::Error;
 
 /// Compared averaging intervals and thresholds of quiet rows.
 const AVERAGING_S: [f64; 3] = [15.0, 30.0, 60.0];

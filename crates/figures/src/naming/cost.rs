@@ -4,15 +4,14 @@ use std::borrow::Cow;
 
 use gyrocal_calibration::{Options, Run};
 use gyrocal_diagnosis::{
-    Blocks, CalibratedRecord, CalibrationRequest, DiagnoseOptions, calibrate_and_diagnose,
-    diagnose, manifest,
+    Blocks, CalibratedRecord, CalibrationRequest, calibrate_and_diagnose, manifest,
 };
+use gyrocal_evaluation::diagnosed;
 use gyrocal_record::{CalibrationMethod, CalibrationReport};
 use gyrocal_truth::{Coefficients, Hidden, Scenario, Simulation, simulate};
 
-use super::Error;
 use crate::cost::{Peak, on_one_core};
-use crate::figure::Figure;
+use crate::harness::{Error, Figure};
 
 /// Records of known cost: what they are, their interval and length in days, what is hidden, and the most time on one
 /// core, s. Those at one row a second are diagnosed as means of blocks; the last is read by `calibrate`.
@@ -77,13 +76,12 @@ pub(super) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
     Ok(figures)
 }
 
-/// Time and memory. Where the kernel does not tell, nothing was measured, and so nothing holds.
-fn costs(name: &str, most_s: f64, seconds: f64, peak: Option<Peak>) -> [Figure; 2] {
-    let peak_mb = peak.and_then(|peak| peak.read_mb()).unwrap_or(f64::NAN);
+/// Time and memory.
+fn costs(name: &str, most_s: f64, seconds: f64, peak: Peak) -> [Figure; 2] {
     let memory = format!("{name}: peak memory of the process");
     [
         Figure::at_most(name, most_s, seconds, "s"),
-        Figure::at_most(&memory, MOST_MB, peak_mb, "MB"),
+        Figure::at_most(&memory, MOST_MB, peak.read_mb(), "MB"),
     ]
 }
 
@@ -103,13 +101,10 @@ fn simulation(interval_s: f64, duration_s: f64, hidden: Option<Term>) -> Result<
 fn calibrated(simulation: &Simulation) -> Result<CalibrationReport, Error> {
     let (record, bench) = (Cow::Borrowed(&simulation.record), &simulation.bench);
     let (record, bench, averaged) = Blocks::or_rows(record, bench, None);
-    let (run, setup) = (
-        Run {
-            record: &record,
-            bench: &bench,
-        },
-        &[],
-    );
+    let run = Run {
+        record: &record,
+        bench: &bench,
+    };
     let request = CalibrationRequest {
         method: CalibrationMethod::Batch,
         options: Options::default(),
@@ -119,7 +114,7 @@ fn calibrated(simulation: &Simulation) -> Result<CalibrationReport, Error> {
             run,
             rows: simulation.record.len(),
             averaged,
-            setup,
+            setup: &[],
         }],
         axes: &[],
         with_effects: None,
@@ -130,9 +125,7 @@ fn calibrated(simulation: &Simulation) -> Result<CalibrationReport, Error> {
 
 /// All numbers of a diagnosis, and its time, s.
 fn told(simulation: &Simulation) -> Result<(String, f64), Error> {
-    let options = DiagnoseOptions::default();
-    let (found, seconds) =
-        on_one_core(|| diagnose(&simulation.record, &simulation.bench, &options));
+    let (found, seconds) = on_one_core(|| diagnosed(simulation));
     let found = found?;
     // Numbers are written with as many digits as tell them from all others.
     let all = format!("{:?}", (&found.result, found.nominal.values()));

@@ -12,7 +12,7 @@ use gyrocal_statistics::{NORMAL_97_5, format, rms_of_present};
 use gyrocal_truth::{Coefficients, Simulation, euler_rule, simulate};
 
 use super::ways::{Found, PAPER_DAYS, SHOWN_SEED, WAYS, key, scenario};
-use crate::error::Error;
+use crate::harness::Error;
 
 /// Number of rows between points of a curve.
 const THINNED: usize = 10;

@@ -5,8 +5,7 @@ use gyrocal_calibration::{Calibration, Options, SiteQuantity, calibrate};
 use gyrocal_truth::{Coefficients, Hidden, Scenario, simulate};
 
 use super::ways::{PAPER_DAYS, SHOWN_SEED, scenario};
-use crate::error::Error;
-use crate::figure::Figure;
+use crate::harness::{Error, Figure};
 use crate::values::{Values, fixed, table, two_digits};
 
 /// Decrease of the three D_I, deg/h/g.

@@ -12,7 +12,7 @@ use super::ways::{
     COORDINATES, EARTH_RATES, Found, PAPER_DAYS, SEEDS, SHOWN_SEED, WAYS, as_printed, key, nis,
     scenario,
 };
-use crate::error::Error;
+use crate::harness::Error;
 use crate::values::{Values, fixed, table, two_digits};
 
 /// Median of the chi-square distribution with nine degrees of freedom.

@@ -7,8 +7,7 @@ use gyrocal_calibration::Options;
 use gyrocal_evaluation::{CalibrationTrial, Target};
 use gyrocal_truth::{Coefficients, Scenario, Simulation, euler_rule, simulate};
 
-use crate::harness::sources::{CALIBRATION, of};
-use crate::harness::{Population, Row};
+use crate::harness::{CALIBRATION, Population, Row, of};
 
 /// Number of seeds; the page has those from the first on.
 pub(super) const SEEDS: u64 = 60;

@@ -3,19 +3,16 @@
 use gyrocal::effect::Enters;
 use gyrocal_calibration::FittedPlatform;
 use gyrocal_design::NamedCause;
-use gyrocal_diagnosis::{DiagnoseOptions, diagnose, predict_later};
-use gyrocal_evaluation::{effect_of, inject_any, run_of, scenario};
+use gyrocal_diagnosis::{DiagnoseOptions, predict_later};
+use gyrocal_evaluation::{diagnosed, effect_of, inject_any, run_of, scenario};
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_statistics::{Proportion, median};
 use gyrocal_truth::{Scenario, simulate};
 use serde::{Deserialize, Serialize};
 
 use super::continued;
-use crate::error::Error;
-use crate::figure::Figure;
 use crate::gain::FIRST_NUMBER;
-use crate::harness::sources::{DIAGNOSIS, of};
-use crate::harness::{Context, Population, Row};
+use crate::harness::{Context, DIAGNOSIS, Error, Figure, Population, Row, of};
 
 /// Least strength of the effect, in sigmas of its own bound; the largest is four times that.
 const LEAST_STRENGTH: f64 = 12.0;
@@ -70,14 +67,8 @@ impl Second {
 
 /// All figures of the part.
 pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
-    let population = Population {
-        name: "second".to_owned(),
-        first: 900_000,
-        full: 1000,
-        small: 10,
-        sources: of(DIAGNOSIS, &[file!(), "crates/figures/src/gain.rs"]),
-        job: Box::new(second),
-    };
+    let sources = of(DIAGNOSIS, &[file!(), "crates/figures/src/gain.rs"]);
+    let population = Population::new("second", [900_000, 1000, 10], sources, second);
     context.measure(&population, &rows())
 }
 
@@ -147,7 +138,7 @@ fn second(seed: u64) -> Result<Second, Error> {
     let (scenario, injected) = inject_any(scenario(number), strength, &mut Draw::new(number, 0))?;
     let first = simulate(&scenario)?;
     let options = DiagnoseOptions::default();
-    let found = diagnose(&first.record, &first.bench, &options)?;
+    let found = diagnosed(&first)?;
     let later = simulate(&Scenario {
         seed: scenario.seed ^ LATER_SEED,
         start_s: scenario.start_s + LATER_S,

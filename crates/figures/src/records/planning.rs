@@ -2,17 +2,13 @@
 
 use gyrocal_calibration::{NoiseModel, Options, calibrate_runs};
 use gyrocal_design::{NamedCause, PlanOptions, Proposal, compare, plan};
-use gyrocal_diagnosis::{DiagnoseOptions, diagnose};
-use gyrocal_evaluation::{Statistic, inject_any, run_of};
+use gyrocal_evaluation::{Statistic, diagnosed, inject_any, run_of};
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{InitialAttitude, Population as Platforms, Scenario, Simulation, simulate};
 use serde::{Deserialize, Serialize};
 
 use super::continued;
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::sources::{DIAGNOSIS, of};
-use crate::harness::{Context, Population, Row};
+use crate::harness::{Context, DIAGNOSIS, Error, Figure, Population, Row, of};
 
 /// Seed of the platforms and their records.
 const PLATFORMS: u64 = 78;
@@ -66,28 +62,12 @@ pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
         sizes.push(ratio.between(WITHIN, WITHIN_REASON));
         sizes.push(Row::mean(name, move |of| Some(after(of)?[1])));
     }
-    let mut figures = context.measure(
-        &population("planned sigmas", 600_000, [200, 3], sigmas),
-        &ratios,
-    )?;
-    figures.extend(context.measure(&population("planned sets", 610_000, [300, 6], sets), &sizes)?);
+    let sources = of(DIAGNOSIS, &[file!()]);
+    let sigmas = Population::new("planned sigmas", [600_000, 200, 3], sources, sigmas);
+    let sets = Population::new("planned sets", [610_000, 300, 6], sources, sets);
+    let mut figures = context.measure(&sigmas, &ratios)?;
+    figures.extend(context.measure(&sets, &sizes)?);
     Ok(figures)
-}
-
-fn population<R: 'static>(
-    name: &str,
-    first: u64,
-    [full, small]: [u64; 2],
-    job: fn(u64) -> Result<R, Error>,
-) -> Population<'static, R> {
-    Population {
-        name: name.to_owned(),
-        first,
-        full,
-        small,
-        sources: of(DIAGNOSIS, &[file!()]),
-        job: Box::new(job),
-    }
 }
 
 /// Two days at any latitude and attitude; of every other record the turn-ons differ.
@@ -130,7 +110,7 @@ fn sigmas(seed: u64) -> Result<Vec<f64>, Error> {
 fn sets(seed: u64) -> Result<Sets, Error> {
     let (scenario, _) = inject_any(scenario(seed), STRENGTH, &mut Draw::new(seed, 0))?;
     let first = simulate(&scenario)?;
-    let found = diagnose(&first.record, &first.bench, &DiagnoseOptions::default())?;
+    let found = diagnosed(&first)?;
     let named = NamedCause::all(&found.result);
     let fitted = found.extended.as_ref().unwrap_or(&found.nominal);
     let mut sets = Sets {

@@ -2,22 +2,22 @@
 
 use gyrocal::Effect;
 use gyrocal::effect::{EffectKind, Enters};
-use gyrocal_answer::{Finding, Verdict};
-use gyrocal_diagnosis::{DiagnoseOptions, Gate, RecordToDiagnose, diagnose, diagnose_together};
-use gyrocal_evaluation::{InjectedEffect, effect_of, run_of, set_holds, testable_effects};
-use gyrocal_setup::PlatformKind;
+use gyrocal_answer::{Answer, Finding, Verdict};
+use gyrocal_evaluation::{
+    InjectedEffect, diagnosed, diagnosed_together, effect_of, run_of, set_holds, testable_effects,
+};
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{Coefficients, InitialAttitude, Scenario, Simulation, simulate};
 use serde::{Deserialize, Serialize};
 
 use super::oracle;
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::sources::{DIAGNOSIS, of};
-use crate::harness::{Context, Population, Row};
+use crate::harness::{Context, DIAGNOSIS, Error, Figure, Population, Row, Sources, of};
 
-/// File of the oracle.
-const ORACLE: &str = "crates/figures/src/records/oracle.rs";
+/// What can move the results.
+const SOURCES: Sources = of(
+    DIAGNOSIS,
+    &[file!(), "crates/figures/src/records/oracle.rs"],
+);
 
 /// Purpose of the stream of draws.
 const EFFECT: u64 = 1810;
@@ -84,16 +84,12 @@ struct Named {
 pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
     let mut figures = Vec::new();
     for cell in &HIDDEN {
-        figures.extend(context.measure(&population(cell), &rows(cell))?);
+        let job = |seed| hidden(seed, cell.records, cell.strength);
+        let seeds = [cell.first, 1000, cell.small];
+        let population = Population::new(cell.name, seeds, SOURCES, job);
+        figures.extend(context.measure(&population, &rows(cell))?);
     }
-    let clean = Population {
-        name: "four clean records".to_owned(),
-        first: 870_000,
-        full: 2000,
-        small: 2,
-        sources: of(DIAGNOSIS, &[file!(), ORACLE]),
-        job: Box::new(is_alarm),
-    };
+    let clean = Population::new("four clean records", [870_000, 2000, 2], SOURCES, is_alarm);
     let name = "four clean records: false alarms, upper bound of 95 %";
     let alarms = Row::bound(name, |alarm: &bool| *alarm).at_most(
         0.02,
@@ -101,17 +97,6 @@ pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
     );
     figures.extend(context.measure(&clean, &[alarms])?);
     Ok(figures)
-}
-
-fn population(cell: &Hidden) -> Population<'_, Named> {
-    Population {
-        name: cell.name.to_owned(),
-        first: cell.first,
-        full: 1000,
-        small: cell.small,
-        sources: of(DIAGNOSIS, &[file!(), ORACLE]),
-        job: Box::new(|seed| hidden(seed, cell.records, cell.strength)),
-    }
 }
 
 fn rows(cell: &Hidden) -> Vec<Row<'_, Named>> {
@@ -203,13 +188,12 @@ fn hidden(seed: u64, records: u64, strength: f64) -> Result<Named, Error> {
         scenario.hidden = vec![injected.to_hidden()?];
     }
     let simulations = simulated(&scenarios)?;
-    let options = DiagnoseOptions::default();
-    let together = diagnose_together(checked(&simulations, &options), &options, |_| ())?.result;
+    let together = together(&simulations)?;
     let set = together.causes().find(|cause| set_holds(cause, effect.id));
     let members = || set.into_iter().flat_map(Finding::set);
     let shapes =
         members().filter(|id| effect_of(id).is_some_and(|member| member.shape().is_some()));
-    let first = diagnose(&simulations[0].record, &simulations[0].bench, &options)?;
+    let first = diagnosed(&simulations[0])?;
     Ok(Named {
         together: set.is_some(),
         set: members().count(),
@@ -226,29 +210,16 @@ fn hidden(seed: u64, records: u64, strength: f64) -> Result<Named, Error> {
 
 /// Whether four records of the nominal model show anything together.
 fn is_alarm(seed: u64) -> Result<bool, Error> {
-    let simulations = simulated(&scenarios(seed, 4))?;
-    let options = DiagnoseOptions::default();
-    let found = diagnose_together(checked(&simulations, &options), &options, |_| ())?;
-    Ok(found.result.verdict != Verdict::Clean)
+    let found = together(&simulated(&scenarios(seed, 4))?)?;
+    Ok(found.verdict != Verdict::Clean)
 }
 
 fn simulated(scenarios: &[Scenario]) -> Result<Vec<Simulation>, Error> {
     Ok(scenarios.iter().map(simulate).collect::<Result<_, _>>()?)
 }
 
-fn checked<'a>(
-    simulations: &'a [Simulation],
-    options: &DiagnoseOptions,
-) -> Vec<RecordToDiagnose<'a>> {
-    let records = simulations.iter().enumerate();
-    let checked = records.map(|(index, simulation)| RecordToDiagnose {
-        name: format!("record {}", index + 1),
-        gate: Gate::new(
-            PlatformKind::Stabilised,
-            &run_of(simulation),
-            &options.calibration,
-        ),
-        bench: &simulation.bench,
-    });
-    checked.collect()
+/// What is said of the records together.
+fn together(simulations: &[Simulation]) -> Result<Answer, Error> {
+    let runs: Vec<_> = simulations.iter().map(run_of).collect();
+    Ok(diagnosed_together(&runs)?.result)
 }

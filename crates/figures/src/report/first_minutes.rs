@@ -6,8 +6,7 @@ use std::time::Instant;
 
 use gyrocal_testkit::workspace;
 
-use crate::error::Error;
-use crate::figure::Figure;
+use crate::harness::{Error, Figure};
 use crate::page;
 
 /// Longest time that the commands may take, build included, min.

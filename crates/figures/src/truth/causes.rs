@@ -8,7 +8,7 @@ use gyrocal_diagnosis::Diagnosis;
 use gyrocal_diagnosis::error_budget::CONFIDENCE_SET_COVERAGE;
 use gyrocal_diagnosis::set_coverage::SET_COVERAGE;
 use gyrocal_evaluation::{
-    InjectedEffect, effect_of, inject_one_of, run_of, same_or_equivalent, set_holds,
+    InjectedEffect, diagnosed, effect_of, inject_one_of, run_of, same_or_equivalent, set_holds,
     sets_without_walks, testable_effects,
 };
 use gyrocal_hypothesis::{FittedModel, HypothesisSet, ModelExtension};
@@ -18,12 +18,8 @@ use gyrocal_truth::{Simulation, Temperature, simulate};
 use serde::{Deserialize, Serialize};
 
 use super::drawn::{self, noisy};
-use super::judged::{self, coefficient_rows, coefficients, diagnosed, may_walk};
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::sources::Sources;
-use crate::harness::sources::{DIAGNOSIS, of};
-use crate::harness::{Context, Population, Row};
+use super::judged::{self, coefficient_rows, coefficients, may_walk};
+use crate::harness::{Context, DIAGNOSIS, Error, Figure, Population, Row, Sources, of};
 
 use Causes::{All, Of, Slow};
 use EffectKind::{Exponential, InitialState, Periodic, Ramp, Regressor, StateJump, Step};

@@ -6,7 +6,7 @@ use gyrocal_record::AXES;
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{Coefficients, Hidden, Scenario};
 
-use crate::error::Error;
+use crate::harness::Error;
 
 /// This file, as a source of populations.
 pub(super) const FILE: &str = file!();

@@ -3,13 +3,11 @@
 use gyrocal::Effect;
 use gyrocal::effect::EffectKind;
 use gyrocal_answer::{Answer, Finding};
-use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, diagnose};
 use gyrocal_evaluation::effect_of;
 use gyrocal_record::AXES;
 use gyrocal_statistics::{NORMAL_97_5, Proportion};
 use gyrocal_truth::Simulation;
 
-use crate::error::Error;
 use crate::harness::Row;
 
 /// This file, as a source of populations.
@@ -19,11 +17,6 @@ pub(super) const FILE: &str = file!();
 const COEFFICIENTS: f64 = 0.93;
 const COEFFICIENTS_REASON: &str =
     "intervals of 95 %, two points for noise and causes that are not known";
-
-pub(super) fn diagnosed(simulation: &Simulation) -> Result<Diagnosis<'_>, Error> {
-    let options = DiagnoseOptions::default();
-    Ok(diagnose(&simulation.record, &simulation.bench, &options)?)
-}
 
 /// Whether a set holds a random walk: of this gyro, or of any without one.
 pub(super) fn may_walk(finding: &Finding, gyro: Option<usize>) -> bool {

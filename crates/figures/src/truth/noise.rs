@@ -3,6 +3,7 @@
 
 use gyrocal_answer::Answer;
 use gyrocal_calibration::NoiseModel;
+use gyrocal_evaluation::diagnosed;
 use gyrocal_record::AXES;
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::faults::noise::{flickering, student, with_noise};
@@ -10,12 +11,10 @@ use gyrocal_truth::{Hidden, simulate};
 use serde::{Deserialize, Serialize};
 
 use super::drawn::{self, misdeclare, plain, walk};
-use super::judged::{self, diagnosed, surely_not_walks, within};
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::sources::Sources;
-use crate::harness::sources::{DIAGNOSIS, of};
-use crate::harness::{COVERAGE, COVERAGE_REASON, Context, Population, Row};
+use super::judged::{self, surely_not_walks, within};
+use crate::harness::{
+    COVERAGE, COVERAGE_REASON, Context, DIAGNOSIS, Error, Figure, Population, Row, Sources, of,
+};
 
 /// What can move the records.
 const SOURCES: Sources = of(DIAGNOSIS, &[file!(), drawn::FILE, judged::FILE]);

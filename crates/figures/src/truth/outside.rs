@@ -2,7 +2,7 @@
 //! probability that the diagnosis gives to none of its effects.
 
 use gyrocal_diagnosis::Diagnosis;
-use gyrocal_evaluation::{EvaluationError, Statistic, UnlistedRecord, inject_any};
+use gyrocal_evaluation::{EvaluationError, Statistic, UnlistedRecord, diagnosed, inject_any};
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_statistics::mean;
 use gyrocal_truth::faults::UnlistedKind;
@@ -10,12 +10,8 @@ use gyrocal_truth::{Scenario, simulate};
 use serde::{Deserialize, Serialize};
 
 use super::drawn::{self, noisy};
-use super::judged::{self, diagnosed};
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::sources::Sources;
-use crate::harness::sources::{DIAGNOSIS, of};
-use crate::harness::{Context, Population, Row};
+use super::judged;
+use crate::harness::{Context, DIAGNOSIS, Error, Figure, Population, Row, Sources, of};
 
 /// What can move the records.
 const SOURCES: Sources = of(DIAGNOSIS, &[file!(), drawn::FILE, judged::FILE]);

@@ -3,8 +3,8 @@
 use std::time::Instant;
 
 use gyrocal_calibration::Options;
-use gyrocal_diagnosis::{DiagnoseOptions, DiagnosisError, Gate, diagnose};
-use gyrocal_evaluation::{Statistic, inject_any, run_of};
+use gyrocal_diagnosis::{DiagnosisError, Gate};
+use gyrocal_evaluation::{Statistic, diagnosed, inject_any, run_of};
 use gyrocal_setup::{PlatformKind, check_setup};
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_statistics::{Proportion, median};
@@ -13,11 +13,7 @@ use gyrocal_truth::{InitialAttitude, Scenario, Simulation, simulate};
 use serde::{Deserialize, Serialize};
 
 use super::drawn::{self, coefficients};
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::sources::Sources;
-use crate::harness::sources::of;
-use crate::harness::{Context, Population, Row};
+use crate::harness::{Context, Error, Figure, Population, Row, Sources, of};
 
 const SOURCES: Sources = of(
     &["crates/diagnosis", "crates/evaluation"],
@@ -226,9 +222,7 @@ fn time(small: bool) -> Result<Vec<Figure>, Error> {
     let mut is_told = true;
     let slowest = [reversed, without].map(|simulation| {
         timed_ms(|| {
-            let options = DiagnoseOptions::default();
-            let found = diagnose(&simulation.record, &simulation.bench, &options);
-            is_told &= matches!(found, Err(DiagnosisError::Setup { .. }));
+            is_told &= matches!(diagnosed(&simulation), Err(DiagnosisError::Setup { .. }));
         })
     });
     let name = |what: &str| format!("time of the gate at {rows} rows, {what}");

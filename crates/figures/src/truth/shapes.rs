@@ -4,18 +4,16 @@
 use gyrocal::EFFECTS;
 use gyrocal::effect::EffectKind;
 use gyrocal_diagnosis::{DiagnoseOptions, fit_effects};
-use gyrocal_evaluation::{effect_of, inject_one_of, run_of};
+use gyrocal_evaluation::{diagnosed, effect_of, inject_one_of, run_of};
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{Simulation, simulate};
 use serde::{Deserialize, Serialize};
 
 use super::drawn::{self, noisy};
-use super::judged::{self, diagnosed, within};
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::sources::Sources;
-use crate::harness::sources::{DIAGNOSIS, of};
-use crate::harness::{COVERAGE, COVERAGE_REASON, Context, Population, Row};
+use super::judged::{self, within};
+use crate::harness::{
+    COVERAGE, COVERAGE_REASON, Context, DIAGNOSIS, Error, Figure, Population, Row, Sources, of,
+};
 
 /// What can move the records.
 const SOURCES: Sources = of(DIAGNOSIS, &[file!(), drawn::FILE, judged::FILE]);

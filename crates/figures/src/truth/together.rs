@@ -1,18 +1,14 @@
 //! One cause of the catalogue beside random walks of some gyros, the noise misdeclared in half of the
 //! records.
 
-use gyrocal_evaluation::{inject_any, set_holds};
+use gyrocal_evaluation::{diagnosed, inject_any, set_holds};
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::{Scenario, simulate};
 use serde::{Deserialize, Serialize};
 
 use super::drawn::{self, misdeclare, plain, walk};
-use super::judged::{self, coefficient_rows, coefficients, diagnosed, surely_not_walks};
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::sources::Sources;
-use crate::harness::sources::{DIAGNOSIS, of};
-use crate::harness::{Context, Population, Row};
+use super::judged::{self, coefficient_rows, coefficients, surely_not_walks};
+use crate::harness::{Context, DIAGNOSIS, Error, Figure, Population, Row, Sources, of};
 
 /// What can move the records.
 const SOURCES: Sources = of(DIAGNOSIS, &[file!(), drawn::FILE, judged::FILE]);

@@ -12,9 +12,7 @@ use super::lane::{Effect, Lane};
 use super::noise::Noise;
 use super::platform::{Platform, information};
 use super::{DAY, LANES, lanes, platforms};
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::{Context, Records, Row};
+use crate::harness::{Context, Error, Figure, Records, Row};
 
 /// Populations that no constant was tuned on, and the one that constants of the watch are tuned on.
 const DELAYS: u64 = 20_261_232;

@@ -5,7 +5,7 @@ use gyrocal_watch::{Observed, Step, Watch};
 use super::noise::{Noise, Source};
 use super::platform::Platform;
 use super::{ACCEL_NOISE_G, COLUMNS, DAY, DRIFT_NOISE, EFFECTS, INTERVAL_S, STATES};
-use crate::error::Error;
+use crate::harness::Error;
 
 /// Onsets of effects and of jumps that live at a time, as in the watch of the filter.
 const ONSETS: usize = 10;

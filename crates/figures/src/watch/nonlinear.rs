@@ -10,9 +10,7 @@ use gyrocal_truth::{Hidden, Population, simulate};
 use serde::{Deserialize, Serialize};
 
 use super::{DAY_S, platforms};
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::{Context, Row};
+use crate::harness::{Context, Error, Figure, Row};
 
 /// A population that no constant was tuned on.
 const RECORDS: u64 = 20_261_234;

@@ -5,7 +5,7 @@ use gyrocal_watch::Step;
 
 use super::lane::{Effect, Lane};
 use super::{COLUMNS, DAY, INTERVAL_S};
-use crate::error::Error;
+use crate::harness::Error;
 
 /// A platform without noise, and the filter over it, whose gains are those of all its realisations.
 pub(super) struct Platform {

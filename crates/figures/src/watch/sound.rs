@@ -9,9 +9,7 @@ use super::lane::Lane;
 use super::noise::Noise;
 use super::platform::Platform;
 use super::{DAY, LANES, lanes, platforms};
-use crate::error::Error;
-use crate::figure::Figure;
-use crate::harness::{Context, Population, Row};
+use crate::harness::{Context, Error, Figure, Population, Row};
 
 /// Populations that no constant was tuned on.
 const SOUND: u64 = 20_261_231;

@@ -4,9 +4,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use gyrocal_codegen::build::Derivation;
-use gyrocal_testkit::{TinyDerivation, codegen, edit, fresh_directory, run, snapshot, workspace};
+use gyrocal_testkit::{codegen, edit, fresh_directory, run, snapshot, workspace};
 
 use crate::SCRATCH;
+use crate::tiny::TinyDerivation;
 
 #[test]
 fn a_damaged_or_missing_file_is_named_with_the_command() {

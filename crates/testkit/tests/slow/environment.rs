@@ -3,11 +3,10 @@
 use std::fs;
 use std::path::Path;
 
-use gyrocal_testkit::{
-    TinyDerivation, codegen, fresh_directory, real_environments, run, snapshot, system_python,
-};
+use gyrocal_testkit::{codegen, fresh_directory, real_environments, run, snapshot, system_python};
 
 use crate::SCRATCH;
+use crate::tiny::TinyDerivation;
 
 fn entries(directory: &Path) -> Vec<String> {
     let names = fs::read_dir(directory).unwrap();

@@ -5,11 +5,12 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use gyrocal_testkit::{
-    Outcome, TinyDerivation, WorkspaceCopy, codegen, edit, executable, fresh_directory, run,
-    snapshot, system_python,
+    Outcome, WorkspaceCopy, codegen, edit, executable, fresh_directory, run, snapshot,
+    system_python,
 };
 
 use crate::SCRATCH;
+use crate::tiny::TinyDerivation;
 
 /// A tiny derivation, and an empty directory for environments.
 struct Case {

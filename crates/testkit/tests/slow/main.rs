@@ -4,6 +4,9 @@
 mod check;
 mod environment;
 mod failures;
+mod no_python;
+mod own_terms;
+mod tiny;
 mod variants;
 mod workspace;
 

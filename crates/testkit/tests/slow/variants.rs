@@ -4,9 +4,10 @@ use std::fs;
 use std::path::PathBuf;
 
 use gyrocal_codegen::build::{Settings, Variant};
-use gyrocal_testkit::{TinyDerivation, edit, real_environments, workspace};
+use gyrocal_testkit::{edit, real_environments, workspace};
 
 use crate::SCRATCH;
+use crate::tiny::TinyDerivation;
 
 /// Function of a tiny derivation that serves other packages; their file holds a factor.
 const DERIVE_FROM: &str = r#"

@@ -6,11 +6,12 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use gyrocal_codegen::build::{Settings, Variant};
 use gyrocal_testkit::{
-    Outcome, WorkspaceCopy, add_own_terms, cargo, code_block, find_own_terms, fresh_directory,
-    real_environments, run, snapshot, tools_only,
+    Outcome, WorkspaceCopy, cargo, fresh_directory, real_environments, run, snapshot,
 };
 
 use crate::SCRATCH;
+use crate::no_python::tools_only;
+use crate::own_terms::{add_own_terms, add_probe, add_program, code_block, find_own_terms};
 
 /// Prints the rates of drift by the squares of specific force alone, each with its
 /// derivatives by the coefficients.
@@ -40,7 +41,7 @@ fn take_copy() -> (WorkspaceCopy, MutexGuard<'static, ()>) {
     static TURN: Mutex<()> = Mutex::new(());
     let turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
     let copy = WorkspaceCopy::make(SCRATCH, "builds");
-    copy.add_probe(PROBE);
+    add_probe(&copy, PROBE);
     (copy, turn)
 }
 
@@ -271,7 +272,7 @@ fn terms_of_ones_own_are_entries_of_the_catalogue_and_a_build() {
     let entry = code_block(&page, "# Adding a term\n");
     // One build for the line and for the terms of each kind.
     add_own_terms(&copy, &entry);
-    copy.add_probe(LINE_PROBE);
+    add_probe(&copy, LINE_PROBE);
     let mut command = quick_cargo(&copy, &target("target"), "run");
     command.args(["--package", "probe", "--features", "gyrocal/catalogue"]);
     let outcome = run(&mut command).succeeded();
@@ -294,7 +295,8 @@ fn terms_of_ones_own_are_entries_of_the_catalogue_and_a_build() {
     }
 
     // It is found in data, with its size, and predicts them better.
-    copy.add_program(
+    add_program(
+        &copy,
         "finder",
         &[
             // With its default features: those that derive.

@@ -1,10 +1,10 @@
 //! The terms of docs/adding-a-term.md, one of each kind: added to a copy of the workspace, hidden in
-//! simulated records and searched for.
+//! simulated records and searched for; and programs in a copy.
 
+use std::fs;
 use std::path::Path;
 
-use crate::command::{Outcome, run};
-use crate::copy::WorkspaceCopy;
+use gyrocal_testkit::{Outcome, WorkspaceCopy, run};
 
 /// Hides each effect in a record of three days of its own, diagnoses the records side by side and
 /// prints a line for each: id, whether it is the one finding, and for each parameter its name and the distance of the
@@ -94,34 +94,34 @@ fn search(seed: u64, (id, drift, add, truth): Case) -> String {
 
 /// One parameter of a term.
 #[derive(Clone, Debug, PartialEq)]
-pub struct FoundParameter {
+pub(crate) struct FoundParameter {
     /// Its name.
-    pub name: String,
+    pub(crate) name: String,
     distance: f64,
 }
 
 impl FoundParameter {
     /// Distance of the estimate from the truth in standard deviations.
-    pub fn distance(&self) -> f64 {
+    pub(crate) fn distance(&self) -> f64 {
         self.distance
     }
 }
 
 /// The diagnosis of a record with one hidden term.
 #[derive(Clone, Debug, PartialEq)]
-pub struct FoundTerm {
+pub(crate) struct FoundTerm {
     /// Public id of the term.
-    pub id: String,
+    pub(crate) id: String,
     /// Whether it is the one finding.
-    pub only: bool,
+    pub(crate) only: bool,
     /// Its parameters; empty if it was not found.
-    pub parameters: Vec<FoundParameter>,
+    pub(crate) parameters: Vec<FoundParameter>,
 }
 
 impl FoundTerm {
     /// Whether it is the one finding, with every parameter within this number of standard
     /// deviations.
-    pub fn is_within(&self, sigmas: f64) -> bool {
+    pub(crate) fn is_within(&self, sigmas: f64) -> bool {
         let mut parameters = self.parameters.iter();
         self.only
             && !self.parameters.is_empty()
@@ -130,7 +130,7 @@ impl FoundTerm {
 }
 
 /// The code block of a page that follows a heading.
-pub fn code_block(page: &str, heading: &str) -> String {
+pub(crate) fn code_block(page: &str, heading: &str) -> String {
     let page = page.replace("\r\n", "\n");
     let (_, section) = page.split_once(heading).unwrap();
     let (_, entry) = section.split_once("```python\n").unwrap();
@@ -138,8 +138,8 @@ pub fn code_block(page: &str, heading: &str) -> String {
 }
 
 /// Adds entries and those of the page to the catalogue of a copy.
-pub fn add_own_terms(copy: &WorkspaceCopy, entries: &str) {
-    let page = std::fs::read_to_string(copy.root.join("docs/adding-a-term.md")).unwrap();
+pub(crate) fn add_own_terms(copy: &WorkspaceCopy, entries: &str) {
+    let page = fs::read_to_string(copy.root.join("docs/adding-a-term.md")).unwrap();
     let of_page = code_block(&page, "## One of each kind\n");
     copy.edit(
         "codegen/derive/catalogue.py",
@@ -149,11 +149,12 @@ pub fn add_own_terms(copy: &WorkspaceCopy, entries: &str) {
 }
 
 /// Builds a program in a copy with these terms that searches for them with `cargo`; its findings.
-pub fn find_own_terms(
+pub(crate) fn find_own_terms(
     copy: &WorkspaceCopy,
     cargo: impl FnOnce(&Path) -> std::process::Command,
 ) -> Vec<FoundTerm> {
-    copy.add_program(
+    add_program(
+        copy,
         "own-terms",
         &[
             // With its default features: those that derive.
@@ -179,4 +180,22 @@ fn found_term(line: &str) -> FoundTerm {
         only: words[1] == "true",
         parameters: parameters.collect(),
     }
+}
+
+/// Adds a program `probe` to a copy that uses the library.
+pub(crate) fn add_probe(copy: &WorkspaceCopy, main: &str) {
+    add_program(copy, "probe", &[("gyrocal", "../..")], main);
+}
+
+/// Adds a program to a copy that uses packages of it, by name and path from the program.
+pub(crate) fn add_program(copy: &WorkspaceCopy, name: &str, packages: &[(&str, &str)], main: &str) {
+    let package = copy.root.join("crates").join(name);
+    fs::create_dir_all(package.join("src")).unwrap();
+    let mut manifest =
+        format!("[package]\nname = \"{name}\"\nedition = \"2024\"\n\n[dependencies]\n");
+    for (package, path) in packages {
+        manifest.push_str(&format!("{package} = {{ path = \"{path}\" }}\n"));
+    }
+    fs::write(package.join("Cargo.toml"), manifest).unwrap();
+    fs::write(package.join("src/main.rs"), main).unwrap();
 }

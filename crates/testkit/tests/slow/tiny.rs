@@ -1,13 +1,14 @@
+//! A small derivation.
+
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::copy::workspace;
-use crate::files::fresh_directory;
+use gyrocal_testkit::{fresh_directory, workspace};
 
 /// A derivation of one function, with the workspace's lock file (so with its environment).
-pub struct TinyDerivation {
+pub(crate) struct TinyDerivation {
     /// Directory that holds `derive` and, once written, `generated`.
-    pub root: PathBuf,
+    pub(crate) root: PathBuf,
 }
 
 const DECLARATION: &str = r#"
@@ -43,7 +44,7 @@ def derive(output):
 
 impl TinyDerivation {
     /// Makes it in `NAME` below `scratch`, anew.
-    pub fn make(scratch: &str, name: &str) -> Self {
+    pub(crate) fn make(scratch: &str, name: &str) -> Self {
         let root = fresh_directory(Path::new(scratch).join(name));
         let derive = root.join("derive");
         fs::create_dir(&derive).unwrap();
@@ -55,22 +56,22 @@ impl TinyDerivation {
     }
 
     /// The derivation directory.
-    pub fn directory(&self) -> PathBuf {
+    pub(crate) fn directory(&self) -> PathBuf {
         self.root.join("derive")
     }
 
     /// The script.
-    pub fn script(&self) -> PathBuf {
+    pub(crate) fn script(&self) -> PathBuf {
         self.directory().join("main.py")
     }
 
     /// The committed Rust file.
-    pub fn rust(&self) -> PathBuf {
+    pub(crate) fn rust(&self) -> PathBuf {
         self.root.join("generated/tiny.rs")
     }
 
     /// The committed program.
-    pub fn program(&self) -> PathBuf {
+    pub(crate) fn program(&self) -> PathBuf {
         self.root.join("generated/tiny.json")
     }
 }
