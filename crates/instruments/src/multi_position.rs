@@ -29,7 +29,7 @@ use gyrocal_statistics::chi_square_tail;
 
 pub use alternatives::Alternative;
 pub use between_stops::NoiseBetweenStops;
-pub use cross_validation::CrossValidation;
+pub use cross_validation::{CrossValidation, FEWEST_STOPS_OF_GAIN};
 pub use log_biases::LogBiases;
 pub use positions::{Instrument, Positions};
 pub use prepare::{PreparedTest, SensorReport, StopReport, prepare, prepare_logs};
@@ -104,12 +104,15 @@ pub fn multi_position_test(
     let mut steps = search(between, &test.data, &mut laws, probability);
     let cross_validation = match steps.is_empty() {
         true => None,
-        false => cross_validate(positions, between, &nominal, settings.left_out, probability),
+        false => {
+            let both = [&nominal[..], &laws];
+            cross_validate(positions, between, both, settings.left_out, probability)
+        }
     };
     let mut not_confirmed = Vec::new();
     if cross_validation
         .as_ref()
-        .is_some_and(CrossValidation::shows_no_gain)
+        .is_some_and(CrossValidation::is_loss)
     {
         let names = steps.iter().map(|step| step.term.id(step.gyro).to_owned());
         not_confirmed = names.collect();

@@ -6,7 +6,7 @@ mod sensors;
 
 use gyrocal_document::{EstimateRow, Estimates, Item, List, Part, Section, Table};
 use gyrocal_instruments::multi_position::{
-    Finding, LawReport, MultiPositionReport, PreparedTest, TumbleResult,
+    FEWEST_STOPS_OF_GAIN, Finding, LawReport, MultiPositionReport, PreparedTest, TumbleResult,
 };
 use gyrocal_record::Manifest;
 use gyrocal_statistics::format;
@@ -66,8 +66,6 @@ fn no_term(answer: &TumbleAnswer<'_>, report: &MultiPositionReport) -> Item {
     })
 }
 
-const TERMS: &str = "Terms that the nominal law lacks";
-
 fn terms(answer: &TumbleAnswer<'_>, report: &MultiPositionReport) -> Section {
     let mut items = vec![no_term(answer, report)];
     if !report.findings.is_empty() {
@@ -92,13 +90,13 @@ fn terms(answer: &TumbleAnswer<'_>, report: &MultiPositionReport) -> Section {
     }
     if !report.not_confirmed.is_empty() {
         items.push(Item::text(format!(
-            "Significant, but no gain on held-out stops, so not in the law: {}.",
+            "Significant, but held-out stops are predicted worse, so not in the law: {}.",
             report.not_confirmed.join(", ")
         )));
     }
     section(
         "terms",
-        TERMS,
+        "Terms that the nominal law lacks",
         "Held against the noise that may be between these stops. Gyro output less all other terms of the extended \
          law, against the regressor of the term: a line through the points is the term.",
         items,
@@ -219,9 +217,13 @@ fn not_identifiable(answer: &TumbleAnswer<'_>) -> [Item; 2] {
 fn gain(answer: &TumbleAnswer<'_>, report: &MultiPositionReport) -> Option<Section> {
     let items = match &report.cross_validation {
         None if report.findings.is_empty() => return None,
+        None if report.stops < FEWEST_STOPS_OF_GAIN => vec![Item::text(format!(
+            "The gain of the extended law on held-out stops is not measured with fewer than \
+             {FEWEST_STOPS_OF_GAIN} stops."
+        ))],
         None => vec![Item::text(format!(
             "The gain of the extended law on held-out stops cannot be measured: without {} successive stops the \
-             others do not determine it. Give a smaller --left-out, or stop in more attitudes.",
+             others do not determine it. Give a smaller --left-out.",
             answer.left_out
         ))],
         Some(gain) => {

@@ -10,7 +10,6 @@ use gyrocal_record::AXES;
 
 use super::{Measured, data};
 use crate::error::Error;
-use crate::figure::Figure;
 
 pub(super) fn measure(measured: &mut Measured) -> Result<(), Error> {
     let begin = Instant::now();

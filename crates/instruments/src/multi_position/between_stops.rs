@@ -22,6 +22,10 @@ const COVERAGE: f64 = 0.95;
 /// Least weight of a level that counts for an interval: thousands of such are nothing.
 const LEAST_WEIGHT: f64 = 1e-9;
 
+/// Share of the levels of a kind, of the least and of the largest, that need not be looked at again where some of the
+/// stops are held out: these tell little more.
+const UNLIKELY: f64 = 1e-6;
+
 /// Noise of one gyro between stops: median and largest level that the stops hold likely (97.5 %) of each kind.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -100,10 +104,26 @@ impl BetweenStops {
         }
     }
 
-    /// The same without some stops, at the same levels.
-    pub(super) fn without(&self, held: &[usize]) -> Self {
+    /// The levels that any of these laws of the gyros leave likely.
+    pub(super) fn likely(&self, of_laws: &[&[Vec<Term>]]) -> Option<Grid> {
+        let mut ranges = [[f64::INFINITY, 0.0]; DIMENSIONS];
+        for laws in of_laws {
+            for gyro in 0..3 {
+                let weights = weights(&self.prior(gyro, laws)?, &self.fits(gyro, &laws[gyro])?);
+                for (dimension, [least, largest]) in ranges.iter_mut().enumerate() {
+                    let level = |share| self.grid.quantile(&weights, dimension, share);
+                    *least = least.min(level(UNLIKELY));
+                    *largest = largest.max(level(1.0 - UNLIKELY));
+                }
+            }
+        }
+        Some(self.grid.within(ranges))
+    }
+
+    /// The same without some stops, at some of the levels.
+    pub(super) fn without(&self, held: &[usize], grid: &Grid) -> Self {
         let parts = core::array::from_fn(|gyro| self.parts[gyro].without(held));
-        Self::at(parts, self.grid.clone(), self.biases)
+        Self::at(parts, grid.clone(), self.biases)
     }
 
     /// Degrees of freedom of the noise between stops in all gyros, beside a term of each.

@@ -12,7 +12,7 @@ use super::search::search;
 use super::terms::Term;
 
 /// Fewest stops of which some are held out: the others have to determine laws with any terms of the catalogue.
-const FEWEST_STOPS: usize = 14;
+pub const FEWEST_STOPS_OF_GAIN: usize = 14;
 
 /// Most blocks: the covariances of the stops without each are factored anew.
 const MOST_BLOCKS: usize = 12;
@@ -41,43 +41,45 @@ pub struct CrossValidation {
 }
 
 impl CrossValidation {
-    /// `true` if the gain is no larger than its standard error: none at all, or none that held-out stops
-    /// show.
+    /// `true` if the extended laws predict held-out stops worse than the nominal ones. A gain below its standard error is
+    /// none: of few blocks one may have it all.
     #[must_use]
-    pub fn shows_no_gain(&self) -> bool {
-        self.cross_validated_log_score_nats <= self.standard_error_nats
+    pub fn is_loss(&self) -> bool {
+        self.cross_validated_log_score_nats < 0.0
     }
 }
 
-/// Holds out one block of stops after the other, searches and fits without it, and predicts it. `None`
-/// if the remaining stops do not determine the laws.
+/// Holds out one block of stops after the other, searches and fits without it, and predicts it. Of the nominal laws, and
+/// of those that a search in all stops found. `None` if the remaining stops do not determine the laws.
 pub(super) fn cross_validate(
     positions: &Positions,
     between: &BetweenStops,
-    nominal: &[Vec<Term>],
+    [nominal, found]: [&[Vec<Term>]; 2],
     left_out: usize,
     false_alarm_probability: f64,
 ) -> Option<CrossValidation> {
     let stops = positions.time_s.len();
-    if stops < FEWEST_STOPS {
+    if stops < FEWEST_STOPS_OF_GAIN {
         return None;
     }
     let left_out = left_out.max(stops.div_ceil(MOST_BLOCKS));
     let all: Vec<usize> = (0..stops).collect();
+    let grid = between.likely(&[nominal, found])?;
+    let of_all = between.without(&[], &grid);
     let mut scores = Vec::new();
     let mut squares = [[0.0; 3]; 2];
-    let mut found = BTreeMap::new();
+    let mut again = BTreeMap::new();
     for block in all.chunks(left_out) {
         let rest = all.iter().copied().filter(|stop| !block.contains(stop));
         let rest: Vec<usize> = rest.collect();
-        let of_rest = between.without(block);
+        let of_rest = between.without(block, &grid);
         let data: [_; 3] = core::array::from_fn(|gyro| WeightedStops::of(positions, gyro, &rest));
         let mut extended = nominal.to_vec();
         for step in search(&of_rest, &data, &mut extended, false_alarm_probability) {
-            *found.entry(step.term.id(step.gyro).to_owned()).or_insert(0) += 1;
+            *again.entry(step.term.id(step.gyro).to_owned()).or_insert(0) += 1;
         }
         // The density of the block given the rest is that of all stops over that of the rest.
-        let score = |laws| Some(between.log_evidence(laws)? - of_rest.log_evidence(laws)?);
+        let score = |laws| Some(of_all.log_evidence(laws)? - of_rest.log_evidence(laws)?);
         scores.push(score(&extended)? - score(nominal)?);
         for (laws, squares) in [nominal, &extended[..]].into_iter().zip(&mut squares) {
             for (gyro, sum) in squares.iter_mut().enumerate() {
@@ -104,6 +106,6 @@ pub(super) fn cross_validate(
         rms_before_deg_per_h,
         rms_after_deg_per_h,
         noise_deg_per_h: core::array::from_fn(|gyro| positions.rms_sigma_deg_per_h(gyro)),
-        found_in_blocks: found.into_iter().collect(),
+        found_in_blocks: again.into_iter().collect(),
     })
 }

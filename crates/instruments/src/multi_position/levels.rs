@@ -54,8 +54,21 @@ impl Grid {
             }
             axis
         });
+        Self::of_axes(axes)
+    }
+
+    fn of_axes(axes: [Vec<f64>; DIMENSIONS]) -> Self {
         let kernels = core::array::from_fn(|dimension| kernel(&axes[dimension], RATIOS[dimension]));
         Self { axes, kernels }
+    }
+
+    /// The levels of this grid from a least to a largest one of each kind.
+    pub(super) fn within(&self, ranges: [[f64; 2]; DIMENSIONS]) -> Self {
+        let mut axes = self.axes.clone();
+        for (axis, [least, largest]) in axes.iter_mut().zip(ranges) {
+            axis.retain(|level| (least..=largest).contains(level));
+        }
+        Self::of_axes(axes)
     }
 
     pub(super) fn len(&self) -> usize {

@@ -28,8 +28,7 @@ pub struct MultiPositionReport {
     pub log_biases: Vec<LogBiases>,
     /// Terms that the nominal laws lack, in the order of the search.
     pub findings: Vec<Finding>,
-    /// Significant terms that do not enter the laws, since they predict held-out stops no better than the
-    /// nominal laws.
+    /// Significant terms that do not enter the laws, since held-out stops are predicted worse with them.
     pub not_confirmed: Vec<String>,
     /// Cross-validation of the extended laws; `None` without findings, or with too few stops: less than fourteen, or too
     /// few beside those held out.
