@@ -6,8 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use gyrocal::generated::MODEL_HASH;
 use gyrocal_instruments::multi_position::{
-    MultiPositionSettings, PreparedTest, SearchSettings, TumbleResult, few_position_test,
-    fewest_stops, multi_position_test, prepare_logs,
+    MultiPositionSettings, PreparedTest, TumbleResult, multi_position_test, prepare_logs,
 };
 use gyrocal_instruments::{
     Description, InstrumentError, Log, ResultFile, StopSettings, find_stops, given_stops,
@@ -23,8 +22,8 @@ use crate::{Failure, Reply};
 /// Multi-position test: fit the drift law to static stops and find missing terms.
 ///
 /// Stops are detected in the log or given. Gyro outputs are fitted to specific force, and terms of
-/// the catalogue are added while they are significant. Reports the alternatives of each term, the
-/// gain of the extended law on held-out stops, and the findings in permuted stops.
+/// the catalogue are added while they are significant beside the noise that may be between stops.
+/// Reports the alternatives of each term, and the gain of the extended law on held-out stops.
 #[derive(Debug, Args)]
 pub(crate) struct TumbleArguments {
     /// The log (CSV) with a header row; several logs of one unit are one or more positions each.
@@ -44,16 +43,13 @@ pub(crate) struct TumbleArguments {
     /// physical units the tremor of a hand (2 deg/s, 0.03 g), in raw counts a factor of 6.
     #[arg(long, value_name = "FACTOR", value_parser = positive, conflicts_with = "stop")]
     quiet_factor: Option<f64>,
-    /// Family-wise false-alarm probability, 1e-4 or more; below 0.01 the time grows with its
-    /// inverse.
-    #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = false_alarm)]
+    /// Family-wise false-alarm probability.
+    #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = probability)]
     false_alarm: f64,
-    /// Successive stops that are held out together to measure the gain.
+    /// Successive stops that are held out together to measure the gain; more where that would be
+    /// more than twelve times.
     #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..))]
     left_out: u32,
-    /// Seed of the permutations.
-    #[arg(long, value_name = "N", default_value_t = 1)]
-    seed: u64,
     #[command(flatten)]
     views: Views,
     /// Write the result for programs (JSON).
@@ -75,7 +71,7 @@ pub(crate) fn run(arguments: &TumbleArguments) -> Result<Reply, Failure> {
     }
     let (prepared, result, clocks) = work(arguments)?;
     tracing::info!(?result, "tested");
-    let manifest = manifest(MODEL_HASH, arguments.seed, &inputs)?;
+    let manifest = manifest(MODEL_HASH, 0, &inputs)?;
     let mut part = of_tumble(&TumbleAnswer {
         manifest: &manifest,
         prepared: &prepared,
@@ -94,13 +90,6 @@ pub(crate) fn run(arguments: &TumbleArguments) -> Result<Reply, Failure> {
     views.stage(&arguments.logs[0], part, &mut answer)?;
     answer.write_json(json, &ResultFile::new(manifest, result))?;
     Ok(answer)
-}
-
-fn false_alarm(text: &str) -> Result<f64, String> {
-    let value = probability(text)?;
-    SearchSettings::at(value, 1)
-        .map(|settings| settings.false_alarm_probability)
-        .map_err(|error| error.to_string())
 }
 
 /// The test, and what there is to tell of the clocks.
@@ -158,17 +147,11 @@ fn tested(
     description: &Description,
 ) -> Result<(PreparedTest, TumbleResult), InstrumentError> {
     let prepared = prepare_logs(logs, description)?;
-    if prepared.stops.len() < fewest_stops() {
-        let report = few_position_test(&prepared.positions, arguments.false_alarm)?;
-        let result = TumbleResult::of_few(&prepared, report);
-        return Ok((prepared, result));
-    }
     let settings = MultiPositionSettings {
-        search: SearchSettings::at(arguments.false_alarm, arguments.seed)?,
+        false_alarm_probability: arguments.false_alarm,
         left_out: arguments.left_out as usize,
-        ..MultiPositionSettings::default()
     };
     let report = multi_position_test(&prepared.positions, &settings)?;
-    let result = TumbleResult::of_many(&prepared, report);
+    let result = TumbleResult::of(&prepared, report);
     Ok((prepared, result))
 }

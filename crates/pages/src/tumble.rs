@@ -4,10 +4,9 @@ mod charts;
 mod screen;
 mod sensors;
 
-use gyrocal_document::{EstimateRow, Estimates, Item, List, Part, Section, Table, Tint};
+use gyrocal_document::{EstimateRow, Estimates, Item, List, Part, Section, Table};
 use gyrocal_instruments::multi_position::{
-    CoefficientReport, FewPositionLaw, FewPositionReport, Finding, MultiPositionReport,
-    PreparedTest, TumbleResult,
+    FEWEST_STOPS_OF_GAIN, Finding, LawReport, MultiPositionReport, PreparedTest, TumbleResult,
 };
 use gyrocal_record::Manifest;
 use gyrocal_statistics::format;
@@ -35,23 +34,18 @@ pub struct TumbleAnswer<'a> {
 /// The page of a multi-position test with its first screen.
 #[must_use]
 pub fn of_tumble(answer: &TumbleAnswer<'_>) -> Part {
-    let result = answer.result;
-    let mut sections = Vec::new();
-    if let Some(report) = &result.test {
-        sections.push(section(
+    let report = &answer.result.test;
+    let mut sections = vec![
+        section(
             "residual",
             "Residual at the stops",
             "Gyro output less drift law at each static stop, before and after the terms that the search added.",
             vec![Item::Chart(charts::residuals(answer.prepared, report))],
-        ));
-        sections.push(terms(answer, report));
-        sections.push(laws(answer, report));
-        sections.push(controls(answer, report));
-    }
-    if let Some(report) = &result.few_positions {
-        sections.push(few_terms(answer, report));
-        sections.push(few_laws(answer, report));
-    }
+        ),
+        terms(answer, report),
+        laws(answer, report),
+    ];
+    sections.extend(gain(answer, report));
     sections.push(sensors::section_of(answer));
     Part {
         name: file_name(answer.manifest, 0, "log"),
@@ -62,17 +56,18 @@ pub fn of_tumble(answer: &TumbleAnswer<'_>) -> Part {
     }
 }
 
-fn no_term(answer: &TumbleAnswer<'_>) -> Item {
-    Item::text(format!(
-        "No significant term beyond the nominal law (false-alarm probability {}).",
-        answer.false_alarm
-    ))
+fn no_term(answer: &TumbleAnswer<'_>, report: &MultiPositionReport) -> Item {
+    Item::text(match report.tells_noise() {
+        true => format!(
+            "No significant term beyond the nominal law (false-alarm probability {}).",
+            answer.false_alarm
+        ),
+        false => "Too few stops to tell a term from the noise between them.".to_owned(),
+    })
 }
 
-const TERMS: &str = "Terms that the nominal law lacks";
-
 fn terms(answer: &TumbleAnswer<'_>, report: &MultiPositionReport) -> Section {
-    let mut items = vec![no_term(answer)];
+    let mut items = vec![no_term(answer, report)];
     if !report.findings.is_empty() {
         let rows = report.findings.iter().map(|one| {
             [
@@ -80,12 +75,11 @@ fn terms(answer: &TumbleAnswer<'_>, report: &MultiPositionReport) -> Section {
                 format::estimate(one.estimate, one.sigma).join(" ± "),
                 one.unit.clone(),
                 format!("{:.1}", one.estimate.abs() / one.sigma),
-                format!("{:.0}", one.f),
                 format::p_cell(one.p_value),
             ]
         });
         let title = "Significant terms, in the order of finding";
-        let heads = "term | > estimate ± σ | unit | > sigmas | > F | > p, family-wise";
+        let heads = "term | > estimate ± σ | unit | > sigmas | > p, family-wise";
         items = vec![
             Item::Chart(charts::contributions(answer.prepared, report)),
             Table::of(title, heads, rows).into(),
@@ -96,15 +90,15 @@ fn terms(answer: &TumbleAnswer<'_>, report: &MultiPositionReport) -> Section {
     }
     if !report.not_confirmed.is_empty() {
         items.push(Item::text(format!(
-            "Significant, but no gain on held-out stops, so not in the law: {}.",
+            "Significant, but held-out stops are predicted worse, so not in the law: {}.",
             report.not_confirmed.join(", ")
         )));
     }
     section(
         "terms",
-        TERMS,
-        "Gyro output less all other terms of the extended law, against the regressor of the term: a line through \
-         the points is the term.",
+        "Terms that the nominal law lacks",
+        "Held against the noise that may be between these stops. Gyro output less all other terms of the extended \
+         law, against the regressor of the term: a line through the points is the term.",
         items,
     )
 }
@@ -152,31 +146,18 @@ fn laws(answer: &TumbleAnswer<'_>, report: &MultiPositionReport) -> Section {
         })
     });
     let estimates = Estimates::new(
-        "Drift laws; sigmas include the scatter beyond the standard errors",
+        "Drift laws; sigmas include the noise between stops",
         &charts::LAWS,
         rows,
     );
     let fits = report.gyros.iter().flat_map(|gyro| {
-        [
-            ("nominal", &gyro.nominal, &gyro.nominal_against_catalogue),
-            ("extended", &gyro.extended, &gyro.extended_against_catalogue),
-        ]
-        .map(|(law, fit, test)| {
-            let [of, beside] = test.degrees_of_freedom;
-            [
-                format!("{}, {law}", gyro.gyro),
-                format!("{:.1}", fit.chi_square),
-                fit.degrees_of_freedom.to_string(),
-                format::p_cell(fit.p_value),
-                format!("{:.0}", fit.excess_deg_per_h),
-                format!("F({of}, {beside}) = {:.1}", test.f),
-                format::p_cell(test.p_value),
-            ]
-        })
+        [("nominal", &gyro.nominal), ("extended", &gyro.extended)]
+            .map(|(law, fit)| fit_row(format!("{}, {law}", gyro.gyro), fit))
     });
-    let heads = "law | > chi-square | > degrees of freedom | > p | > scatter, deg/h | > all further terms | > p of these";
+    let heads =
+        "law | > chi-square | > degrees of freedom | > p | > scatter, deg/h | > flicker | > walk";
     let fits = Table::of(
-        "Fits: scatter beyond the standard errors of the stops, and all terms of the catalogue against the law",
+        "Fits by the standard errors of the stops; noise between stops, median and (97.5 %), the walk from stop to stop",
         heads,
         fits,
     );
@@ -184,7 +165,7 @@ fn laws(answer: &TumbleAnswer<'_>, report: &MultiPositionReport) -> Section {
     let gyros = report.gyros.iter();
     for gyro in gyros.filter(|gyro| !gyro.undetermined.is_empty()) {
         items.push(Item::text(format!(
-            "{}: not identifiable from these attitudes, given the others: {}.",
+            "{}: not determined by these positions in addition: {}.",
             gyro.gyro,
             gyro.undetermined.join(", ")
         )));
@@ -196,6 +177,22 @@ fn laws(answer: &TumbleAnswer<'_>, report: &MultiPositionReport) -> Section {
         "Coefficients of each gyro in the nominal law and in the one with the terms found.",
         items,
     )
+}
+
+fn fit_row(name: String, fit: &LawReport) -> [String; 7] {
+    let level = |[median, most]: [f64; 2]| {
+        let [median, most] = [median, most].map(|level| format::short(level, 2));
+        format!("{median} ({most})")
+    };
+    [
+        name,
+        format!("{:.1}", fit.chi_square),
+        fit.degrees_of_freedom.to_string(),
+        fit.p_value.map_or_else(String::new, format::p_cell),
+        level(fit.noise.scatter_deg_per_h),
+        level(fit.noise.flicker_deg_per_h),
+        level(fit.noise.walk_deg_per_h),
+    ]
 }
 
 fn not_identifiable(answer: &TumbleAnswer<'_>) -> [Item; 2] {
@@ -216,123 +213,44 @@ fn not_identifiable(answer: &TumbleAnswer<'_>) -> [Item; 2] {
     .map(Item::text)
 }
 
-fn controls(answer: &TumbleAnswer<'_>, report: &MultiPositionReport) -> Section {
-    let controls = &report.controls;
-    let spurious = match &*controls.forces_renamed_unexpected {
-        [] => "none".to_owned(),
-        names => names.join(", "),
-    };
-    let mut items = vec![Item::text(format!(
-        "Findings in {} of {} data sets with permuted stops; with all axes renamed, the findings are {} under \
-         their new names; with only the axes of the accelerometers renamed, spurious findings: {spurious}.",
-        controls.shuffles_with_findings,
-        controls.shuffles,
-        if controls.renamed_as_expected {
-            "the same"
-        } else {
-            "NOT the same"
-        },
-    ))];
-    if report.cross_validation.is_none() && !report.findings.is_empty() {
-        items.push(Item::text(format!(
+/// What the terms do on held-out stops.
+fn gain(answer: &TumbleAnswer<'_>, report: &MultiPositionReport) -> Option<Section> {
+    let items = match &report.cross_validation {
+        None if report.findings.is_empty() => return None,
+        None if report.stops < FEWEST_STOPS_OF_GAIN => vec![Item::text(format!(
+            "The gain of the extended law on held-out stops is not measured with fewer than \
+             {FEWEST_STOPS_OF_GAIN} stops."
+        ))],
+        None => vec![Item::text(format!(
             "The gain of the extended law on held-out stops cannot be measured: without {} successive stops the \
              others do not determine it. Give a smaller --left-out.",
             answer.left_out
-        )));
-    }
-    if let Some(gain) = &report.cross_validation {
-        let list = |values: [f64; 3]| values.map(|value| format!("{value:.0}")).join(", ");
-        items.push(Item::text(format!(
-            "On held-out stops ({} blocks of up to {}, searched and fitted without them) the extended law \
-             improves the predictive log score by {:.1} ± {:.1} nats. Rms errors of gyros x, y, z: {} deg/h, \
-             nominal law {}, standard errors of the stops {}.",
-            gain.blocks,
-            gain.left_out,
-            gain.cross_validated_log_score_nats,
-            gain.standard_error_nats,
-            list(gain.rms_after_deg_per_h),
-            list(gain.rms_before_deg_per_h),
-            list(gain.noise_deg_per_h),
-        )));
-        let found = gain.found_in_blocks.iter();
-        let rows = found.map(|(term, count)| [term.clone(), format!("{count} of {}", gain.blocks)]);
-        items.push(Table::of("Terms found without a block", "term | > found in", rows).into());
-    }
-    section(
-        "controls",
-        "Controls",
-        "What the search finds in stops that are permuted, and how often it finds each term when a block of stops is \
-         held out.",
+        ))],
+        Some(gain) => {
+            let list = |values: [f64; 3]| values.map(|value| format!("{value:.0}")).join(", ");
+            let text = Item::text(format!(
+                "On held-out stops ({} blocks of up to {}, searched and fitted without them) the extended law \
+                 improves the predictive log score by {:.1} ± {:.1} nats. Rms errors of gyros x, y, z: {} deg/h, \
+                 nominal law {}, standard errors of the stops {}.",
+                gain.blocks,
+                gain.left_out,
+                gain.cross_validated_log_score_nats,
+                gain.standard_error_nats,
+                list(gain.rms_after_deg_per_h),
+                list(gain.rms_before_deg_per_h),
+                list(gain.noise_deg_per_h),
+            ));
+            let found = gain.found_in_blocks.iter();
+            let rows =
+                found.map(|(term, count)| [term.clone(), format!("{count} of {}", gain.blocks)]);
+            let again = Table::of("Terms found without a block", "term | > found in", rows);
+            vec![text, again.into()]
+        }
+    };
+    Some(section(
+        "gain",
+        "Gain on held-out stops",
+        "What the terms do at stops that are held out, and how often the search finds each without these.",
         items,
-    )
-}
-
-fn few_terms(answer: &TumbleAnswer<'_>, report: &FewPositionReport) -> Section {
-    let rows = report.findings.iter().map(|one| {
-        [
-            one.effect.clone(),
-            format::estimate(one.estimate, one.sigma).join(" ± "),
-            one.unit.clone(),
-            format::p_cell(one.p_value),
-        ]
-    });
-    let heads = "term | > estimate ± σ | unit | > p, family-wise";
-    let others = report.findings.iter();
-    let others = others.map(|one| alternatives(&one.effect, &one.alternatives));
-    let items = match List::of("What else each may be", others) {
-        None => vec![no_term(answer)],
-        Some(list) => vec![
-            Table::of("Significant terms", heads, rows).into(),
-            list.into(),
-        ],
-    };
-    let lead = "Integrated over the noise between stops that these stops may have.";
-    section("terms", TERMS, lead, items)
-}
-
-fn few_laws(answer: &TumbleAnswer<'_>, report: &FewPositionReport) -> Section {
-    let coefficients = report.gyros.iter().flat_map(|gyro| &gyro.coefficients);
-    let row = |one: &CoefficientReport| {
-        EstimateRow::new(&one.name, &one.unit, [[one.estimate, one.sigma]])
-    };
-    let models = [("estimate", Tint::Extended)];
-    let estimates = Estimates::new("Drift laws", &models, coefficients.map(row));
-    let mut items = vec![Item::Estimates(estimates)];
-    items.extend(report.gyros.iter().map(|gyro| Item::text(few_fit(gyro))));
-    items.extend(not_identifiable(answer));
-    let lead = format!("The terms that {} positions determine.", report.stops);
-    section("laws", "Drift laws", &lead, items)
-}
-
-fn few_fit(gyro: &FewPositionLaw) -> String {
-    let mut text = match gyro.p_value {
-        Some(p) => format!(
-            "{}: chi-square {:.1} with {} degrees of freedom, {}",
-            gyro.gyro,
-            gyro.chi_square,
-            gyro.degrees_of_freedom,
-            format::p_value(p)
-        ),
-        None => format!(
-            "{}: no degrees of freedom are left to test the law",
-            gyro.gyro
-        ),
-    };
-    let level = |[median, most]: [f64; 2]| {
-        let [median, most] = [median, most].map(|level| format::short(level, 2));
-        format!("{median} (at most {most})")
-    };
-    text += &format!(
-        "; noise between stops, deg/h: scatter {}, flicker {}, walk from stop to stop {}",
-        level(gyro.noise.scatter_deg_per_h),
-        level(gyro.noise.flicker_deg_per_h),
-        level(gyro.noise.walk_deg_per_h)
-    );
-    if !gyro.undetermined.is_empty() {
-        text += &format!(
-            ". Not determined in addition: {}",
-            gyro.undetermined.join(", ")
-        );
-    }
-    text + "."
+    ))
 }

@@ -49,14 +49,12 @@ fn the_nominal_law_of_the_recorded_instrument_is_wrong_and_cross_axis_terms_are_
     ];
     assert_eq!(found, cross_axis);
     for gyro in test["gyros"].as_array().unwrap() {
-        let p_value = gyro["nominal_against_catalogue"]["p_value"]
-            .as_f64()
-            .unwrap();
-        // By far: an F of 45 or more with 8 and 27 degrees of freedom.
+        // 35 degrees of freedom: by far.
+        let p_value = gyro["nominal"]["p_value"].as_f64().unwrap();
         assert!(p_value < 1e-10, "{p_value}");
-        // The excess scatter of the stops is at most as large as their standard errors.
-        let excess = gyro["extended"]["excess_deg_per_h"].as_f64().unwrap();
-        assert!(excess < 60.0, "{excess}");
+        // The scatter of the stops is about as large as their standard errors.
+        let scatter = &gyro["extended"]["noise"]["scatter_deg_per_h"];
+        assert!(scatter[0].as_f64().unwrap() < 60.0, "{scatter}");
     }
     // The same terms by another least-squares program, in counts per g: 6.61, 2.94, -13.16,
     // 8.19, -7.98, -6.89, times 43.2 deg/h a count. Other weights, one sigma at the most.
@@ -85,11 +83,6 @@ fn the_nominal_law_of_the_recorded_instrument_is_wrong_and_cross_axis_terms_are_
     let nats = gain["cross_validated_log_score_nats"].as_f64().unwrap();
     let error = gain["standard_error_nats"].as_f64().unwrap();
     assert!(nats > 5.0 * error, "{nats} {error}");
-    let controls = &test["controls"];
-    // A hundred draws of a hundredth: more than five have a probability of 0.05 %.
-    assert!(controls["shuffles_with_findings"].as_u64().unwrap() <= 5);
-    assert_eq!(controls["renamed_as_expected"], true);
-    assert_eq!(controls["forces_renamed_unexpected"], serde_json::json!([]));
 }
 
 /// Width of the pictures as PNG, px.
@@ -151,13 +144,9 @@ fn a_rare_false_alarm_does_not_hide_what_is_there() {
     let folder = Folder::new();
     let (log, description) = (repository_argument(LOG), repository_argument(DESCRIPTION));
     let arguments = arguments(&log, &description);
-    let text = folder.succeed([&arguments[..4], &["--false-alarm", "0.0009"]].concat());
-    // 0.0009 asks for 11111 permutations; the six terms have an F of 43 or more.
-    assert_eq!(text.matches("p = 9e-5").count(), 6, "{text}");
-    let output = folder.run([&arguments[..4], &["--false-alarm", "1e-5"]].concat());
-    assert_eq!(output.status.code(), Some(2));
-    let errors = String::from_utf8(output.stderr).unwrap();
-    assert_says(&errors, "expected 1e-4 or more");
+    let text = folder.succeed([&arguments[..4], &["--false-alarm", "1e-5"]].concat());
+    // The largest p of the six terms is half of it.
+    assert_says(&text, "the nominal drift law lacks 6 terms");
 }
 
 #[test]
@@ -356,7 +345,7 @@ fn six_logs_are_six_positions() {
     assert_says(&two, "a test needs six");
     assert!(!two.contains("how sure"), "{two}");
     let json: serde_json::Value = folder.json("o.json");
-    let finding = &json["few_positions"]["findings"][0];
+    let finding = &json["test"]["findings"][0];
     assert_eq!(finding["effect"], "gyro_x.g_z");
     let [estimate, sigma] = ["estimate", "sigma"].map(|key| finding[key].as_f64().unwrap());
     assert!((estimate - 400.0).abs() < 4.0 * sigma, "{estimate} {sigma}");

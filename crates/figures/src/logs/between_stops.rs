@@ -3,7 +3,7 @@
 use core::ops::Range;
 
 use gyrocal_instruments::multi_position::{
-    Instrument, Positions, SearchSettings, Term, few_position_test, fewest_stops, search,
+    Instrument, MultiPositionSettings, Positions, Term, multi_position_test,
 };
 use gyrocal_instruments::{InstrumentError, Log, stop_means};
 use gyrocal_statistics::NORMAL_97_5;
@@ -87,10 +87,6 @@ fn rows(stops: usize, size: f64, least: f64) -> Vec<Row<'static, Test>> {
             })
             .at_most(0.021, "1 % is promised; of a thousand, 21 hold 99.9 %"),
         );
-        // The test of many stops has its coefficients elsewhere.
-        if stops >= fewest_stops() {
-            continue;
-        }
         rows.push(
             Row::each(of("coefficients in their intervals"), move |test: &Test| {
                 let sound = test.noise == noise && test.hidden.is_none();
@@ -240,21 +236,11 @@ fn positions(rates: &[Vec<f64>], forces: &[Vector3<f64>]) -> Result<Positions, I
 
 /// Names that a test finds, and whether its coefficients, which are zero, are in their intervals.
 fn tested(positions: &Positions) -> Result<(Vec<Vec<String>>, Vec<bool>), InstrumentError> {
-    let stops = positions.time_s.len();
-    if stops >= fewest_stops() {
-        let all: Vec<usize> = (0..stops).collect();
-        let steps = search(positions, &all, &SearchSettings::default());
-        let names = steps
-            .iter()
-            .map(|step| vec![step.term.id(step.gyro).to_owned()]);
-        return Ok((names.collect(), Vec::new()));
-    }
-    let report = few_position_test(positions, 0.01)?;
-    let found = report.findings.iter().map(|finding| {
-        let names = core::iter::once(&finding.effect).chain(&finding.alternatives);
-        names.cloned().collect()
-    });
-    let coefficients = report.gyros.iter().flat_map(|gyro| &gyro.coefficients);
+    let report = multi_position_test(positions, &MultiPositionSettings::default())?;
+    let found = report.findings.iter();
+    let found = found.map(|finding| finding.with_alternatives().map(str::to_owned).collect());
+    let coefficients = report.gyros.iter();
+    let coefficients = coefficients.flat_map(|gyro| &gyro.extended.coefficients);
     let within = coefficients.map(|one| one.estimate.abs() <= NORMAL_97_5 * one.sigma);
     Ok((found.collect(), within.collect()))
 }

@@ -1,6 +1,8 @@
 //! Tests of six and of twelve positions.
 
-use gyrocal_instruments::multi_position::{Term, few_position_test, prepare_logs};
+use gyrocal_instruments::multi_position::{
+    MultiPositionSettings, Term, multi_position_test, prepare_logs,
+};
 use gyrocal_instruments::{InstrumentError, Log};
 use gyrocal_record::AXES;
 use gyrocal_statistics::NORMAL_97_5;
@@ -127,17 +129,20 @@ fn test(count: usize, sizes: [f64; 2], seed: u64) -> Result<Test, InstrumentErro
     };
     let logs: Vec<_> = forces.iter().map(made).collect();
     let prepared = prepare_logs(&logs, &described(RATE_HZ, latitude_deg, "")?)?;
-    let report = few_position_test(&prepared.positions, 0.01)?;
+    let report = multi_position_test(&prepared.positions, &MultiPositionSettings::default())?;
     let contains =
         |truth: f64, estimate: f64, sigma: f64| (estimate - truth).abs() <= NORMAL_97_5 * sigma;
     let of_gyros = report.gyros.iter().enumerate().flat_map(|(gyro, law)| {
         let unit = &unit;
-        law.coefficients.iter().filter_map(move |coefficient| {
-            let mut terms = Term::NOMINAL.into_iter().chain(Term::catalogue(gyro));
-            let term = terms.find(|term| term.id(gyro) == coefficient.name)?;
-            let truth = of_gyro(unit, gyro, term) / DEG_PER_H;
-            Some(contains(truth, coefficient.estimate, coefficient.sigma))
-        })
+        law.extended
+            .coefficients
+            .iter()
+            .filter_map(move |coefficient| {
+                let mut terms = Term::NOMINAL.into_iter().chain(Term::catalogue(gyro));
+                let term = terms.find(|term| term.id(gyro) == coefficient.name)?;
+                let truth = of_gyro(unit, gyro, term) / DEG_PER_H;
+                Some(contains(truth, coefficient.estimate, coefficient.sigma))
+            })
     });
     let truths = of_accelerometers(&unit);
     let of_accelerometers = prepared.accel_errors.iter().flat_map(|errors| {
@@ -146,10 +151,10 @@ fn test(count: usize, sizes: [f64; 2], seed: u64) -> Result<Test, InstrumentErro
         all.map(|(coefficient, truth)| contains(*truth, coefficient.estimate, coefficient.sigma))
     });
 
-    let found = report.findings.iter().map(|finding| {
-        let names = core::iter::once(&finding.effect).chain(&finding.alternatives);
-        names.cloned().collect()
-    });
+    let found = report
+        .findings
+        .iter()
+        .map(|finding| finding.with_alternatives().map(str::to_owned).collect());
     Ok(Test {
         hidden: hidden.map(|(gyro, axis)| format!("gyro_{}.g_{}", AXES[gyro], AXES[axis])),
         found: found.collect(),

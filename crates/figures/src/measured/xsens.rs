@@ -22,44 +22,36 @@ pub(super) fn measure(measured: &mut Measured) -> Result<(), Error> {
     laws(measured, &report);
     findings(measured, &report);
     gain(measured, &report)?;
-    controls(measured, &report);
     Ok(())
 }
 
-/// Chi-square of each law by the standard errors of the stops, and its F test against all terms of the
-/// catalogue.
+/// Chi-square of each law by the standard errors of the stops, and the noise between stops beside it.
 fn laws(measured: &mut Measured, report: &MultiPositionReport) {
     let mut lines = Vec::new();
+    let level = |[median, most]: [f64; 2]| format!("{median:.0} ({most:.0})");
     for gyro in &report.gyros {
         let of = &gyro.gyro;
-        for (name, law, test) in [
-            ("nominal", &gyro.nominal, &gyro.nominal_against_catalogue),
-            ("extended", &gyro.extended, &gyro.extended_against_catalogue),
-        ] {
+        for (name, law) in [("nominal", &gyro.nominal), ("extended", &gyro.extended)] {
             let (freedom, chi_square) = (law.degrees_of_freedom, law.chi_square);
-            let (excess, f, p) = (law.excess_deg_per_h, test.f, test.p_value);
-            let [added, left] = test.degrees_of_freedom;
-            let p = match p < 1e-3 {
-                true => format!("{p:.0e}"),
-                false => format!("{p:.3}"),
-            };
+            let noise = &law.noise;
+            let levels = [
+                noise.scatter_deg_per_h,
+                noise.flicker_deg_per_h,
+                noise.walk_deg_per_h,
+            ];
+            let levels = levels.map(level).join(" | ");
             lines.push(format!(
-                "| {of}, {name} law | {freedom:.0} | {chi_square:.1} | {excess:.0} | F({added}, {left}) = {f:.1} | {p} |"
+                "| {of}, {name} law | {freedom} | {chi_square:.1} | {levels} |"
             ));
         }
-        let [nominal, extended] =
-            [&gyro.nominal, &gyro.extended].map(|law| law.chi_square / law.degrees_of_freedom);
-        let p = gyro.nominal_against_catalogue.p_value.log10();
+        let [nominal, extended] = [&gyro.nominal, &gyro.extended]
+            .map(|law| law.chi_square / law.degrees_of_freedom as f64);
         for (what, value) in [
             (
                 "chi-square of the nominal law over its expectation",
                 nominal,
             ),
             ("that of the extended law", extended),
-            (
-                "log10 p of the nominal law against the catalogue (F test)",
-                p,
-            ),
         ] {
             measured.judge(&format!("xsens {of}: {what}"), value);
         }
@@ -78,7 +70,7 @@ fn findings(measured: &mut Measured, report: &MultiPositionReport) {
     };
     let lines = report.findings.iter().map(|found| {
         let (effect, size, sigma) = (&found.effect, found.estimate, found.sigma);
-        let (f, p) = (found.f, found.p_value);
+        let p = found.p_value;
         let others: Vec<String> = found.alternatives.iter().map(written).collect();
         let others = match others.is_empty() {
             true => "none".to_owned(),
@@ -88,7 +80,7 @@ fn findings(measured: &mut Measured, report: &MultiPositionReport) {
             .nearest_ruled_out
             .as_ref()
             .map_or(String::new(), written);
-        format!("| `{effect}` | {size:.0} ± {sigma:.0} | {f:.0} | {p:.3} | {others} | {nearest} |")
+        format!("| `{effect}` | {size:.0} ± {sigma:.0} | {p:.0e} | {others} | {nearest} |")
     });
     let lines: Vec<String> = lines.collect();
     let all = || report.findings.iter();
@@ -160,21 +152,4 @@ fn gain(measured: &mut Measured, report: &MultiPositionReport) -> Result<(), Err
         measured.judge(&format!("xsens gyro_{axis}: {what}"), after / before);
     }
     Ok(())
-}
-
-fn controls(measured: &mut Measured, report: &MultiPositionReport) {
-    let controls = &report.controls;
-    let found = controls.shuffles_with_findings;
-    measured.put([
-        ("shuffles", controls.shuffles.to_string()),
-        ("shuffles_with_findings", found.to_string()),
-    ]);
-    let name = "xsens: shuffled data sets in which something is found";
-    measured.judge(name, found as f64).runs = controls.shuffles;
-    measured.figures.push(Figure::truth(
-        "xsens: all axes renamed, the same findings under their new names",
-        controls.renamed_as_expected,
-    ));
-    let name = "xsens: accelerometers' axes renamed, findings that are not there";
-    measured.judge(name, controls.forces_renamed_unexpected.len() as f64);
 }

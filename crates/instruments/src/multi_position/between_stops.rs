@@ -6,11 +6,12 @@
 //! give it, and a ramp against walks.
 
 use gyrocal_statistics::math::{exp, ln};
-use gyrocal_statistics::{NORMAL_97_5, normal_probability, two_sided_p};
-use nalgebra::{Cholesky, DMatrix, DVector};
+use gyrocal_statistics::{NORMAL_97_5, chi_square_tail, normal_probability, two_sided_p};
+use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 
-use super::levels::{DIMENSIONS, Grid, Levels};
+use super::level_fits::{FitAtLevel, Gram, all_levels};
+use super::levels::{DIMENSIONS, Grid};
 use super::positions::Positions;
 use super::stop_parts::StopParts;
 use super::terms::Term;
@@ -18,8 +19,12 @@ use super::terms::Term;
 /// Probability of an interval of a coefficient.
 const COVERAGE: f64 = 0.95;
 
-/// Least share of a scaled column that others leave of it, where a fit has it.
-const LEAST_SHARE: f64 = 1e-9;
+/// Least weight of a level that counts for an interval: thousands of such are nothing.
+const LEAST_WEIGHT: f64 = 1e-9;
+
+/// Share of the levels of a kind, of the least and of the largest, that need not be looked at again where some of the
+/// stops are held out: these tell little more.
+const UNLIKELY: f64 = 1e-6;
 
 /// Noise of one gyro between stops: median and largest level that the stops hold likely (97.5 %) of each kind.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -36,36 +41,16 @@ pub struct NoiseBetweenStops {
 /// The stops of three gyros at all levels of noise between them.
 pub(super) struct BetweenStops {
     grid: Grid,
-    gyros: [GyroAtLevels; 3],
+    parts: [StopParts; 3],
+    /// Of each gyro, all levels in the order of the grid.
+    gyros: [Vec<Gram>; 3],
     /// Biases of logs after the first that each law has.
     pub(super) biases: usize,
 }
 
-/// One gyro at all levels.
-struct GyroAtLevels {
-    /// Terms whose columns are there.
-    terms: Vec<Term>,
-    /// Standard error that levels are multiples of \[deg/h\].
-    unit_deg_per_h: f64,
-    at: Vec<Gram>,
-}
-
-/// Products of rates, terms and biases of logs over the covariance of one level, in this order.
-struct Gram {
-    ln_determinant: f64,
-    products: DMatrix<f64>,
-}
-
-/// A law fitted at one level.
-struct FitAtLevel {
-    /// Restricted log-likelihood: the coefficients are integrated out.
-    log_likelihood: f64,
-    estimates: DVector<f64>,
-    covariance: DMatrix<f64>,
-}
-
 /// A law, integrated over the levels.
 pub(super) struct LawEstimate {
+    /// Its terms, and the biases of logs after the first.
     pub(super) estimates: DVector<f64>,
     /// Covariance; its intervals of two standard deviations hold 95 % of the distribution of each coefficient.
     pub(super) covariance: DMatrix<f64>,
@@ -83,37 +68,62 @@ pub(super) struct TermEvidence {
 impl BetweenStops {
     /// Of stops whose gyros have these nominal laws.
     pub(super) fn of(positions: &Positions, laws: &[Vec<Term>]) -> Self {
-        let parts: [StopParts; 3] = core::array::from_fn(|gyro| StopParts::of(positions, gyro));
+        let parts = || core::array::from_fn(|gyro| StopParts::of(positions, gyro));
+        let stops = positions.time_s.len();
         let biases = positions.logs().len().saturating_sub(1);
-        let has_stops_to_spare = biases > 0 && biases + 1 < positions.time_s.len();
-        if has_stops_to_spare {
-            let each = Self::with_biases(&parts, laws, biases);
-            let spare = |law: &Vec<Term>| law.len() + biases < positions.time_s.len();
-            if laws.iter().all(spare) && each.all_determined(laws) {
+        let spare = |law: &Vec<Term>| law.len() + biases < stops;
+        if biases > 0 && biases + 1 < stops && laws.iter().all(spare) {
+            let each = Self::with_biases(parts(), laws, biases);
+            if (0..3).all(|gyro| {
+                each.gyros[gyro][0]
+                    .fit(&each.columns(gyro, &laws[gyro]))
+                    .is_some()
+            }) {
                 return each;
             }
         }
-        Self::with_biases(&parts, laws, 0)
+        Self::with_biases(parts(), laws, 0)
     }
 
-    fn with_biases(parts: &[StopParts; 3], laws: &[Vec<Term>], biases: usize) -> Self {
+    fn with_biases(parts: [StopParts; 3], laws: &[Vec<Term>], biases: usize) -> Self {
         let largest = parts.iter().zip(laws).map(|(part, law)| {
             let freedom = part.stops().saturating_sub(law.len() + biases);
             part.largest_level(law, biases, freedom)
         });
         let spare = |law: &Vec<Term>| parts[0].stops() > law.len() + biases;
         let grid = Grid::new(largest.fold(0.0, f64::max), laws.iter().any(spare));
-        let gyros = core::array::from_fn(|gyro| GyroAtLevels::of(&parts[gyro], &grid, biases));
+        Self::at(parts, grid, biases)
+    }
+
+    fn at(parts: [StopParts; 3], grid: Grid, biases: usize) -> Self {
         Self {
+            gyros: core::array::from_fn(|gyro| all_levels(&parts[gyro], &grid, biases)),
             grid,
-            gyros,
+            parts,
             biases,
         }
     }
 
-    fn all_determined(&self, laws: &[Vec<Term>]) -> bool {
-        let mut pairs = self.gyros.iter().zip(laws);
-        pairs.all(|(gyro, law)| gyro.at[0].fit(&self.columns(gyro, law, None)).is_some())
+    /// The levels that any of these laws of the gyros leave likely.
+    pub(super) fn likely(&self, of_laws: &[&[Vec<Term>]]) -> Option<Grid> {
+        let mut ranges = [[f64::INFINITY, 0.0]; DIMENSIONS];
+        for laws in of_laws {
+            for gyro in 0..3 {
+                let weights = weights(&self.prior(gyro, laws)?, &self.fits(gyro, &laws[gyro])?);
+                for (dimension, [least, largest]) in ranges.iter_mut().enumerate() {
+                    let level = |share| self.grid.quantile(&weights, dimension, share);
+                    *least = least.min(level(UNLIKELY));
+                    *largest = largest.max(level(1.0 - UNLIKELY));
+                }
+            }
+        }
+        Some(self.grid.within(ranges))
+    }
+
+    /// The same without some stops, at some of the levels.
+    pub(super) fn without(&self, held: &[usize], grid: &Grid) -> Self {
+        let parts = core::array::from_fn(|gyro| self.parts[gyro].without(held));
+        Self::at(parts, grid.clone(), self.biases)
     }
 
     /// Degrees of freedom of the noise between stops in all gyros, beside a term of each.
@@ -122,46 +132,44 @@ impl BetweenStops {
         laws.iter().map(left).sum()
     }
 
-    /// Columns of a law, and of one term more, in the Gram matrices of a gyro.
-    fn columns(&self, gyro: &GyroAtLevels, law: &[Term], with: Option<Term>) -> Vec<usize> {
-        let place = |term: &Term| gyro.terms.iter().position(|one| one == term);
-        let terms = gyro.terms.len();
-        let mut columns: Vec<usize> = law.iter().filter_map(place).map(|at| at + 1).collect();
-        columns.extend((0..self.biases).map(|bias| 1 + terms + bias));
-        columns.extend(with.as_ref().and_then(place).map(|at| at + 1));
+    /// Columns of a law and of the biases of logs in the products of a gyro.
+    fn columns(&self, gyro: usize, law: &[Term]) -> Vec<usize> {
+        let own = &self.parts[gyro];
+        let mut columns: Vec<usize> = law.iter().filter_map(|term| own.place(*term)).collect();
+        columns.extend((0..self.biases).map(|bias| 1 + own.terms.len() + bias));
         columns
     }
 
-    /// Log-likelihoods of all levels of a gyro with a law; no level where it is not determined.
-    fn fits(&self, gyro: usize, law: &[Term], with: Option<Term>) -> Option<Vec<FitAtLevel>> {
-        let own = &self.gyros[gyro];
-        let columns = self.columns(own, law, with);
-        own.at.iter().map(|gram| gram.fit(&columns)).collect()
+    /// Fits of all levels of a gyro with a law; `None` where it is not determined.
+    fn fits(&self, gyro: usize, law: &[Term]) -> Option<Vec<FitAtLevel>> {
+        let columns = self.columns(gyro, law);
+        let levels = self.gyros[gyro].iter();
+        levels.map(|gram| gram.fit(&columns)).collect()
     }
 
-    /// What the other gyros, with their laws, hold likely of the levels of one: logarithms of a prior.
-    fn prior(&self, gyro: usize, laws: &[Vec<Term>]) -> Option<Vec<f64>> {
+    /// Likelihoods of the levels that are common to some gyros with their laws, as logarithms.
+    fn common(&self, gyros: impl Iterator<Item = usize>, laws: &[Vec<Term>]) -> Option<Vec<f64>> {
         let mut ln_common = vec![0.0; self.grid.len()];
-        for other in (0..3).filter(|other| *other != gyro) {
-            let fits = self.fits(other, &laws[other], None)?;
+        for gyro in gyros {
+            let fits = self.fits(gyro, &laws[gyro])?;
             let likelihoods: Vec<f64> = fits.iter().map(|fit| fit.log_likelihood).collect();
             for (sum, own) in ln_common.iter_mut().zip(self.grid.common(&likelihoods)) {
                 *sum += own;
             }
         }
-        Some(self.grid.of_gyro(&ln_common))
+        Some(ln_common)
     }
 
-    /// Weights of the levels of a gyro, which sum to one.
-    fn weights(&self, prior: &[f64], fits: &[FitAtLevel]) -> Vec<f64> {
-        let pairs = prior.iter().zip(fits);
-        let logs: Vec<f64> = pairs
-            .map(|(prior, fit)| prior + fit.log_likelihood)
-            .collect();
-        let largest = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let weights: Vec<f64> = logs.iter().map(|one| exp(one - largest)).collect();
-        let sum: f64 = weights.iter().sum();
-        weights.into_iter().map(|weight| weight / sum).collect()
+    /// Log-likelihood of the laws of all gyros, integrated over coefficients and levels, but for a constant.
+    pub(super) fn log_evidence(&self, laws: &[Vec<Term>]) -> Option<f64> {
+        self.common(0..3, laws).map(|logs| ln_sum(&logs))
+    }
+
+    /// What the other gyros, with their laws, hold likely of the levels of one: logarithms of a prior.
+    fn prior(&self, gyro: usize, laws: &[Vec<Term>]) -> Option<Vec<f64>> {
+        let others = (0..3).filter(|other| *other != gyro);
+        let ln_common = self.common(others, laws)?;
+        Some(self.grid.of_gyro(&ln_common))
     }
 
     /// Each of these terms beside the law of a gyro; `None` of one that the stops do not determine.
@@ -171,67 +179,79 @@ impl BetweenStops {
         laws: &[Vec<Term>],
         terms: &[Term],
     ) -> Vec<Option<TermEvidence>> {
-        let (Some(prior), Some(base)) =
-            (self.prior(gyro, laws), self.fits(gyro, &laws[gyro], None))
+        let (Some(prior), Some(base)) = (self.prior(gyro, laws), self.fits(gyro, &laws[gyro]))
         else {
             return terms.iter().map(|_| None).collect();
         };
         let evidence = |term: &Term| {
-            let fits = self.fits(gyro, &laws[gyro], Some(*term))?;
-            let weights = self.weights(&prior, &fits);
-            let normal = |fit: &FitAtLevel| {
-                let last = fit.estimates.len() - 1;
-                fit.estimates[last] / fit.covariance[(last, last)].sqrt()
-            };
-            let p_value = weights
-                .iter()
-                .zip(&fits)
-                .map(|(weight, fit)| weight * two_sided_p(normal(fit)));
-            let logs: Vec<f64> = (0..fits.len())
-                .map(|at| prior[at] + base[at].log_likelihood + 0.5 * normal(&fits[at]).powi(2))
-                .collect();
+            let at = self.parts[gyro].place(*term)?;
+            let levels = base.iter().zip(&self.gyros[gyro]);
+            let beside = levels.map(|(fit, gram)| fit.beside(gram, at));
+            let beside: Vec<[f64; 2]> = beside.collect::<Option<_>>()?;
+            let logs = prior.iter().zip(&beside);
+            let weights = normalised(
+                &logs
+                    .map(|(prior, [_, own])| prior + own)
+                    .collect::<Vec<_>>(),
+            );
+            let pairs = weights.iter().zip(&beside);
+            let p_value = pairs.map(|(weight, [normal, _])| weight * two_sided_p(*normal));
+            let best = prior.iter().zip(&base).zip(&beside);
+            let best = best.map(|((prior, fit), [normal, _])| {
+                prior + fit.log_likelihood + 0.5 * normal * normal
+            });
             Some(TermEvidence {
                 p_value: p_value.sum(),
-                log_likelihood: ln_sum(&logs),
+                log_likelihood: ln_sum(&best.collect::<Vec<_>>()),
             })
         };
         terms.iter().map(evidence).collect()
     }
 
+    /// Probability of biases of logs that are as different, of a gyro of one bias; `None` where laws have none.
+    pub(super) fn one_bias(&self, gyro: usize, laws: &[Vec<Term>]) -> Option<f64> {
+        let columns = self.columns(gyro, &laws[gyro]);
+        let (law, _) = columns.split_at(columns.len() - self.biases);
+        let (prior, fits) = (self.prior(gyro, laws)?, self.fits(gyro, &laws[gyro])?);
+        let weights = weights(&prior, &fits);
+        let mut p_value = 0.0;
+        for ((weight, fit), gram) in weights.iter().zip(&fits).zip(&self.gyros[gyro]) {
+            let explained = gram.fit(law)?.left() - fit.left();
+            p_value += weight * chi_square_tail(explained.max(0.0), self.biases as f64)?;
+        }
+        Some(p_value)
+    }
+
     /// The law of a gyro, integrated over the levels; `None` where the stops do not determine it.
     pub(super) fn law(&self, gyro: usize, laws: &[Vec<Term>]) -> Option<LawEstimate> {
-        let prior = self.prior(gyro, laws)?;
-        let fits = self.fits(gyro, &laws[gyro], None)?;
-        let weights = self.weights(&prior, &fits);
-        let count = laws[gyro].len();
+        let columns = self.columns(gyro, &laws[gyro]);
+        let (prior, fits) = (self.prior(gyro, laws)?, self.fits(gyro, &laws[gyro])?);
+        let weights = weights(&prior, &fits);
+        let count = columns.len();
+        let levels = weights.iter().zip(&fits);
+        let levels = levels.filter(|(weight, _)| **weight > LEAST_WEIGHT);
+        let levels: Vec<_> = levels
+            .map(|(weight, fit)| (*weight, fit.estimates(&columns), fit.covariance(&columns)))
+            .collect();
         let mut estimates = DVector::zeros(count);
-        for (weight, fit) in weights.iter().zip(&fits) {
-            estimates += *weight * fit.estimates.rows(0, count);
+        for (weight, own, _) in &levels {
+            estimates += *weight * own;
         }
         let mut covariance = DMatrix::zeros(count, count);
-        for (weight, fit) in weights.iter().zip(&fits) {
-            let off = fit.estimates.rows(0, count) - &estimates;
-            covariance +=
-                *weight * (fit.covariance.view((0, 0), (count, count)) + &off * off.transpose());
+        for (weight, own, spread) in &levels {
+            let off = own - &estimates;
+            covariance += *weight * (spread + &off * off.transpose());
         }
         let scales = DVector::from_fn(count, |i, _| {
-            let normals: Vec<[f64; 3]> = weights
-                .iter()
-                .zip(&fits)
-                .map(|(weight, fit)| {
-                    [
-                        *weight,
-                        fit.estimates[i] - estimates[i],
-                        fit.covariance[(i, i)].sqrt(),
-                    ]
-                })
-                .collect();
-            half_width(&normals) / NORMAL_97_5 / covariance[(i, i)].sqrt()
+            let normals = levels.iter().map(|(weight, own, spread)| {
+                [*weight, own[i] - estimates[i], spread[(i, i)].sqrt()]
+            });
+            half_width(&normals.collect::<Vec<_>>()) / NORMAL_97_5 / covariance[(i, i)].sqrt()
         });
         let covariance = DMatrix::from_fn(count, count, |i, j| {
             covariance[(i, j)] * scales[i] * scales[j]
         });
-        let unit = self.gyros[gyro].unit_deg_per_h;
+        let unit = self.parts[gyro].unit_deg_per_h;
         let [scatter_deg_per_h, flicker_deg_per_h, walk_deg_per_h] =
             core::array::from_fn::<_, DIMENSIONS, _>(|dimension| {
                 [0.5, 0.975].map(|share| unit * self.grid.quantile(&weights, dimension, share))
@@ -248,59 +268,19 @@ impl BetweenStops {
     }
 }
 
-impl GyroAtLevels {
-    fn of(parts: &StopParts, grid: &Grid, biases: usize) -> Self {
-        let columns = parts.columns(biases);
-        let at = grid.levels().map(|levels: Levels| {
-            // Fast noise, which each part has, keeps the covariance positive definite.
-            let cholesky = Cholesky::new_unchecked(parts.covariance(levels));
-            let factor = cholesky.l_dirty();
-            let ln_determinant = (0..factor.nrows()).map(|i| 2.0 * ln(factor[(i, i)])).sum();
-            let mut white = columns.clone();
-            factor.solve_lower_triangular_unchecked_mut(&mut white);
-            Gram {
-                ln_determinant,
-                products: white.tr_mul(&white),
-            }
-        });
-        Self {
-            terms: parts.terms.clone(),
-            unit_deg_per_h: parts.unit_deg_per_h,
-            at: at.collect(),
-        }
-    }
+/// Weights of levels, which sum to one.
+fn weights(prior: &[f64], fits: &[FitAtLevel]) -> Vec<f64> {
+    let pairs = prior.iter().zip(fits);
+    let logs: Vec<f64> = pairs
+        .map(|(prior, fit)| prior + fit.log_likelihood)
+        .collect();
+    normalised(&logs)
 }
 
-impl Gram {
-    /// Fit of the rates by some columns; `None` where they are not determined.
-    fn fit(&self, columns: &[usize]) -> Option<FitAtLevel> {
-        let count = columns.len();
-        let scales = DVector::from_fn(count, |i, _| {
-            self.products[(columns[i], columns[i])].sqrt().recip()
-        });
-        let scaled = DMatrix::from_fn(count, count, |i, j| {
-            scales[i] * self.products[(columns[i], columns[j])] * scales[j]
-        });
-        let cholesky = Cholesky::new(scaled)?;
-        let factor = cholesky.l_dirty();
-        let shares = (0..count).map(|i| factor[(i, i)] * factor[(i, i)]);
-        if shares.clone().any(|share| share < LEAST_SHARE) {
-            return None;
-        }
-        let by_rates = DVector::from_fn(count, |i, _| scales[i] * self.products[(columns[i], 0)]);
-        let solution = cholesky.solve(&by_rates);
-        let left = self.products[(0, 0)] - solution.dot(&by_rates);
-        let ln_information: f64 =
-            shares.map(ln).sum::<f64>() - 2.0 * scales.iter().map(|scale| ln(*scale)).sum::<f64>();
-        let inverse = cholesky.inverse();
-        Some(FitAtLevel {
-            log_likelihood: -0.5 * (self.ln_determinant + ln_information + left),
-            estimates: solution.component_mul(&scales),
-            covariance: DMatrix::from_fn(count, count, |i, j| {
-                scales[i] * inverse[(i, j)] * scales[j]
-            }),
-        })
-    }
+/// Shares of exponentials in their sum.
+fn normalised(logs: &[f64]) -> Vec<f64> {
+    let sum = ln_sum(logs);
+    logs.iter().map(|one| exp(one - sum)).collect()
 }
 
 /// Half the width of the interval about zero that holds [`COVERAGE`] of a mixture of normal distributions, each with

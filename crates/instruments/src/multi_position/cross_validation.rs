@@ -1,12 +1,21 @@
 //! Blocked cross-validation of the extended laws.
 
-use nalgebra::DVector;
+use std::collections::BTreeMap;
+
 use serde::Serialize;
 
+use super::between_stops::BetweenStops;
+use super::log_biases::residuals;
 use super::positions::Positions;
-use super::regression::{Fit, WeightedStops};
-use super::search::{SearchSettings, search, terms_of};
+use super::regression::WeightedStops;
+use super::search::search;
 use super::terms::Term;
+
+/// Fewest stops of which some are held out: the others have to determine laws with any terms of the catalogue.
+pub const FEWEST_STOPS_OF_GAIN: usize = 14;
+
+/// Most blocks: the covariances of the stops without each are factored anew.
+const MOST_BLOCKS: usize = 12;
 
 /// Gain of the extended over the nominal laws at held-out stops.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -16,7 +25,8 @@ pub struct CrossValidation {
     pub left_out: usize,
     /// Number of such blocks.
     pub blocks: usize,
-    /// Difference of the predictive log scores, extended less nominal, summed over all stops and gyros.
+    /// Difference of the predictive log scores, extended less nominal, summed over all stops and gyros and integrated
+    /// over the noise between stops.
     pub cross_validated_log_score_nats: f64,
     /// Its standard error, from the scatter between blocks.
     pub standard_error_nats: f64,
@@ -31,49 +41,54 @@ pub struct CrossValidation {
 }
 
 impl CrossValidation {
-    /// `true` if the gain is no larger than its standard error: none at all, or none that held-out stops
-    /// show.
+    /// `true` if the extended laws predict held-out stops worse than the nominal ones. A gain below its standard error is
+    /// none: of few blocks one may have it all.
     #[must_use]
-    pub fn shows_no_gain(&self) -> bool {
-        self.cross_validated_log_score_nats <= self.standard_error_nats
+    pub fn is_loss(&self) -> bool {
+        self.cross_validated_log_score_nats < 0.0
     }
 }
 
-/// Holds out one block of stops after the other, searches and fits without it, and predicts it. `None`
-/// if the remaining stops do not determine the laws.
-#[must_use]
-pub fn cross_validate(
+/// Holds out one block of stops after the other, searches and fits without it, and predicts it. Of the nominal laws, and
+/// of those that a search in all stops found. `None` if the remaining stops do not determine the laws.
+pub(super) fn cross_validate(
     positions: &Positions,
+    between: &BetweenStops,
+    [nominal, found]: [&[Vec<Term>]; 2],
     left_out: usize,
-    settings: &SearchSettings,
+    false_alarm_probability: f64,
 ) -> Option<CrossValidation> {
     let stops = positions.time_s.len();
+    if stops < FEWEST_STOPS_OF_GAIN {
+        return None;
+    }
+    let left_out = left_out.max(stops.div_ceil(MOST_BLOCKS));
     let all: Vec<usize> = (0..stops).collect();
+    let grid = between.likely(&[nominal, found])?;
+    let of_all = between.without(&[], &grid);
     let mut scores = Vec::new();
-    let mut squares = [[0.0; 2]; 3];
-    let mut found = std::collections::BTreeMap::new();
+    let mut squares = [[0.0; 3]; 2];
+    let mut again = BTreeMap::new();
     for block in all.chunks(left_out) {
-        let rest: Vec<usize> = all
-            .iter()
-            .copied()
-            .filter(|stop| !block.contains(stop))
-            .collect();
-        let steps = search(positions, &rest, settings);
-        for step in &steps {
-            *found.entry(step.term.id(step.gyro).to_owned()).or_insert(0) += 1;
+        let rest = all.iter().copied().filter(|stop| !block.contains(stop));
+        let rest: Vec<usize> = rest.collect();
+        let of_rest = between.without(block, &grid);
+        let data: [_; 3] = core::array::from_fn(|gyro| WeightedStops::of(positions, gyro, &rest));
+        let mut extended = nominal.to_vec();
+        for step in search(&of_rest, &data, &mut extended, false_alarm_probability) {
+            *again.entry(step.term.id(step.gyro).to_owned()).or_insert(0) += 1;
         }
-        let mut score = 0.0;
-        for (gyro, squares) in squares.iter_mut().enumerate() {
-            let laws = [Term::NOMINAL.to_vec(), terms_of(&steps, gyro)];
-            for (which, law) in laws.iter().enumerate() {
-                let used = WeightedStops::of(positions, gyro, &rest).with_excess_of(law);
-                let unused = WeightedStops::of(positions, gyro, block).like(&used);
-                let fit = used.fit(law)?;
-                let sign = if which == 0 { -1.0 } else { 1.0 };
-                score += sign * predict(&fit, law, &unused, &mut squares[which]);
+        // The density of the block given the rest is that of all stops over that of the rest.
+        let score = |laws| Some(of_all.log_evidence(laws)? - of_rest.log_evidence(laws)?);
+        scores.push(score(&extended)? - score(nominal)?);
+        for (laws, squares) in [nominal, &extended[..]].into_iter().zip(&mut squares) {
+            for (gyro, sum) in squares.iter_mut().enumerate() {
+                let law = of_rest.law(gyro, laws)?;
+                let unused = WeightedStops::of(positions, gyro, block);
+                let errors = residuals(positions, &unused, block, &laws[gyro], &law.estimates);
+                *sum += errors.norm_squared();
             }
         }
-        scores.push(score);
     }
     let blocks = scores.len() as f64;
     let total: f64 = scores.iter().sum();
@@ -81,36 +96,16 @@ pub fn cross_validate(
         .iter()
         .map(|score| (score - total / blocks).powi(2))
         .sum::<f64>();
-    let rms = |which: usize| squares.map(|squares| (squares[which] / stops as f64).sqrt());
-    let noise = |gyro: usize| {
-        let variances = positions
-            .sigma_deg_per_h
-            .iter()
-            .map(|sigma| sigma[gyro].powi(2));
-        (variances.sum::<f64>() / stops as f64).sqrt()
-    };
+    let [rms_before_deg_per_h, rms_after_deg_per_h] =
+        squares.map(|gyros| gyros.map(|sum| (sum / stops as f64).sqrt()));
     Some(CrossValidation {
         left_out,
         blocks: scores.len(),
         cross_validated_log_score_nats: total,
         standard_error_nats: (scatter * blocks / (blocks - 1.0)).sqrt(),
-        rms_before_deg_per_h: rms(0),
-        rms_after_deg_per_h: rms(1),
-        noise_deg_per_h: [noise(0), noise(1), noise(2)],
-        found_in_blocks: found.into_iter().collect(),
+        rms_before_deg_per_h,
+        rms_after_deg_per_h,
+        noise_deg_per_h: core::array::from_fn(|gyro| positions.rms_sigma_deg_per_h(gyro)),
+        found_in_blocks: again.into_iter().collect(),
     })
-}
-
-/// Predictive log score of the held-out stops; adds the squares of their errors \[(deg/h)²\].
-fn predict(fit: &Fit, law: &[Term], unused: &WeightedStops, squares: &mut f64) -> f64 {
-    let columns = unused.columns(law);
-    (0..unused.len())
-        .map(|stop| {
-            let row: DVector<f64> = columns.row(stop).transpose();
-            let prediction = fit.predict(&row, unused.rates[stop]);
-            *squares += (prediction.error * unused.sigma[stop]).powi(2);
-            // From the density of the whitened rate to that of the rate.
-            prediction.log_score - unused.sigma[stop].ln()
-        })
-        .sum()
 }

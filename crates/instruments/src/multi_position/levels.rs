@@ -27,6 +27,7 @@ const SPREAD: f64 = 0.35;
 const APART: f64 = 0.2;
 
 /// All combinations of levels.
+#[derive(Clone)]
 pub(super) struct Grid {
     axes: [Vec<f64>; DIMENSIONS],
     /// Probability of each level of one gyro given that which is common to the gyros: row by common level.
@@ -53,23 +54,37 @@ impl Grid {
             }
             axis
         });
+        Self::of_axes(axes)
+    }
+
+    fn of_axes(axes: [Vec<f64>; DIMENSIONS]) -> Self {
         let kernels = core::array::from_fn(|dimension| kernel(&axes[dimension], RATIOS[dimension]));
         Self { axes, kernels }
+    }
+
+    /// The levels of this grid from a least to a largest one of each kind.
+    pub(super) fn within(&self, ranges: [[f64; 2]; DIMENSIONS]) -> Self {
+        let mut axes = self.axes.clone();
+        for (axis, [least, largest]) in axes.iter_mut().zip(ranges) {
+            axis.retain(|level| (least..=largest).contains(level));
+        }
+        Self::of_axes(axes)
     }
 
     pub(super) fn len(&self) -> usize {
         self.axes.iter().map(Vec::len).product()
     }
 
-    /// All combinations, the last dimension fastest.
-    pub(super) fn levels(&self) -> impl Iterator<Item = Levels> + '_ {
-        let [scatter, flicker, walk] = &self.axes;
-        scatter.iter().flat_map(move |scatter| {
-            let pairs = flicker
-                .iter()
-                .flat_map(|flicker| walk.iter().map(|walk| [*flicker, *walk]));
-            pairs.map(|[flicker, walk]| [*scatter, flicker, walk])
-        })
+    /// Levels of scatter, of which all combinations with [`Self::pairs`] follow one another in the grid.
+    pub(super) fn scatter(&self) -> &[f64] {
+        &self.axes[0]
+    }
+
+    /// All pairs of levels of flicker and walk, the latter fastest.
+    pub(super) fn pairs(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
+        let [_, flicker, walk] = &self.axes;
+        let flicker = flicker.iter();
+        flicker.flat_map(|flicker| walk.iter().map(|walk| [*flicker, *walk]))
     }
 
     /// Likelihoods of the levels that are common to the gyros from those of one gyro, whose levels are near the common
@@ -152,7 +167,7 @@ mod tests {
             let grid = Grid::new(largest, true);
             // 36 levels of scatter and 10 of the others over the range, and zero of each.
             assert!(grid.len() <= 37 * 11 * 11, "{largest}: {}", grid.len());
-            assert_eq!(grid.levels().count(), grid.len());
+            assert_eq!(grid.scatter().len() * grid.pairs().count(), grid.len());
         }
     }
 

@@ -142,24 +142,6 @@ impl Positions {
         ))
     }
 
-    /// Some of the stops.
-    pub(super) fn only(&self, which: &[usize]) -> Self {
-        fn pick<T: Clone>(values: &[T], which: &[usize]) -> Vec<T> {
-            which.iter().map(|stop| values[*stop].clone()).collect()
-        }
-        Self {
-            time_s: pick(&self.time_s, which),
-            rate_deg_per_h: pick(&self.rate_deg_per_h, which),
-            sigma_deg_per_h: pick(&self.sigma_deg_per_h, which),
-            heading_sigma_deg_per_h: pick(&self.heading_sigma_deg_per_h, which),
-            quantisation_sigma_deg_per_h: pick(&self.quantisation_sigma_deg_per_h, which),
-            parts_deg_per_h: pick(&self.parts_deg_per_h, which),
-            duration_s: pick(&self.duration_s, which),
-            force_g: pick(&self.force_g, which),
-            log: pick(&self.log, which),
-        }
-    }
-
     /// The same stops of several logs, each with its number from zero.
     #[must_use]
     pub fn of_logs(self, log: Vec<usize>) -> Self {

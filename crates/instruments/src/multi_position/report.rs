@@ -4,9 +4,10 @@ use gyrocal_statistics::root_mean_square;
 use serde::Serialize;
 
 use super::alternatives::Alternative;
+use super::between_stops::NoiseBetweenStops;
 use super::cross_validation::CrossValidation;
 use super::log_biases::LogBiases;
-use super::negative_controls::NegativeControls;
+use super::search::LEAST_FREEDOM;
 use super::terms::Term;
 
 /// Result of a multi-position test.
@@ -17,22 +18,31 @@ pub struct MultiPositionReport {
     pub stops: usize,
     /// The laws of each gyro.
     pub gyros: Vec<GyroReport>,
-    /// Gyros whose bias differs between the logs of the test: these differences are taken off before the
-    /// search. Empty of one log.
+    /// Degrees of freedom of all gyros that tell the noise between stops beside a term of each. Of less than six no term
+    /// is tested.
+    pub freedom_of_noise: usize,
+    /// Logs after the first that have a bias of their own in each law, which then has the bias in the first log. Zero where
+    /// logs have too few stops for that: the scatter of the stops has the change of the bias too.
+    pub biases_of_further_logs: usize,
+    /// Gyros whose bias differs between the logs of the test. Empty of one log.
     pub log_biases: Vec<LogBiases>,
     /// Terms that the nominal laws lack, in the order of the search.
     pub findings: Vec<Finding>,
-    /// Significant terms that do not enter the laws, since they predict held-out stops no better than the
-    /// nominal laws.
+    /// Significant terms that do not enter the laws, since held-out stops are predicted worse with them.
     pub not_confirmed: Vec<String>,
-    /// Cross-validation of the extended laws; `None` without findings, or with too few stops.
+    /// Cross-validation of the extended laws; `None` without findings, or with too few stops: less than fourteen, or too
+    /// few beside those held out.
     #[serde(rename = "gain")]
     pub cross_validation: Option<CrossValidation>,
-    /// Searches in data without effects.
-    pub controls: NegativeControls,
 }
 
 impl MultiPositionReport {
+    /// Whether the stops tell the noise between them, so that a term is tested.
+    #[must_use]
+    pub fn tells_noise(&self) -> bool {
+        self.freedom_of_noise >= LEAST_FREEDOM
+    }
+
     /// Root mean square of the residuals of all gyros at all stops for the nominal and for the extended
     /// laws, deg/h.
     #[must_use]
@@ -51,32 +61,31 @@ impl MultiPositionReport {
 pub struct GyroReport {
     /// Name of the gyro.
     pub gyro: String,
-    /// The nominal law.
+    /// Those terms of the nominal law that the positions determine.
     pub nominal: LawReport,
     /// The law with the terms that the search added.
     pub extended: LawReport,
-    /// F test of the nominal law against one with all determined terms of the catalogue.
-    pub nominal_against_catalogue: FTest,
-    /// The same of the extended law.
-    pub extended_against_catalogue: FTest,
-    /// Terms of the catalogue that the attitudes of the stops do not determine in addition to the others.
+    /// Terms of the catalogue that the positions do not determine in addition to the extended law.
     pub undetermined: Vec<String>,
 }
 
-/// Fit of one law.
+/// One law.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct LawReport {
-    /// Its coefficients.
+    /// Its coefficients. Their standard deviations are those of the noise within and between stops: intervals of 1.96 of
+    /// them hold 95 %. Where no degrees of freedom are left they are those without scatter of the stops.
     pub coefficients: Vec<CoefficientReport>,
-    /// Sum of squares of the residuals over their standard errors.
+    /// Covariance of the coefficients in their order.
+    pub covariance: Vec<Vec<f64>>,
+    /// Sum of squares of the residuals over the standard errors of the stops, at the coefficients that make it least.
     pub chi_square: f64,
     /// Degrees of freedom.
-    pub degrees_of_freedom: f64,
-    /// p-value of `chi_square`: the probability of a larger one if law and standard errors are right.
-    pub p_value: f64,
-    /// Excess scatter: standard deviation of the residuals beyond the standard errors.
-    pub excess_deg_per_h: f64,
+    pub degrees_of_freedom: usize,
+    /// Probability of a larger `chi_square` without noise between stops; `None` without degrees of freedom.
+    pub p_value: Option<f64>,
+    /// Noise between stops, over which the coefficients are integrated.
+    pub noise: NoiseBetweenStops,
     /// Residual of each stop \[deg/h\].
     pub residuals_deg_per_h: Vec<f64>,
 }
@@ -89,22 +98,10 @@ pub struct CoefficientReport {
     pub name: String,
     /// The estimate.
     pub estimate: f64,
-    /// Standard deviation, excess scatter included.
+    /// Standard deviation, noise between stops included.
     pub sigma: f64,
     /// Unit of `estimate` and `sigma`.
     pub unit: String,
-}
-
-/// F test of a law against a larger one.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct FTest {
-    /// The F statistic.
-    pub f: f64,
-    /// Its degrees of freedom.
-    pub degrees_of_freedom: [f64; 2],
-    /// p-value: the probability of a larger statistic if the smaller law is right.
-    pub p_value: f64,
 }
 
 /// A term that the nominal law lacks.
@@ -127,20 +124,24 @@ pub struct Finding {
     pub unit: String,
     /// Factor of the coefficient at each stop.
     pub regressor: Vec<f64>,
-    /// F statistic of the search step that added it.
-    pub f: f64,
-    /// Family-wise p-value of `f` over the whole search.
+    /// Probability of as large a term in any of the tests of a law without it.
     pub p_value: f64,
-    /// Alternatives: terms that cannot be rejected in its place at the coverage of the settings.
+    /// Alternatives: terms that explain the stops as well in its place, the nearest first.
     #[serde(rename = "rivals")]
     pub alternatives: Vec<Alternative>,
-    /// The nearest term that is rejected.
+    /// The nearest term that does not.
     pub nearest_ruled_out: Option<Alternative>,
-    /// Largest log-likelihood deficit of an alternative.
-    pub deficit_limit: f64,
     /// Exact equivalents.
     pub equivalents: Vec<String>,
     /// For a cross-axis term: misalignment of the accelerometers with which the along-axis term would
     /// mimic it \[rad\].
     pub misalignment_needed_rad: Option<f64>,
+}
+
+impl Finding {
+    /// Names of the term and of its alternatives.
+    pub fn with_alternatives(&self) -> impl Iterator<Item = &str> {
+        let others = self.alternatives.iter().map(|other| &*other.effect);
+        core::iter::once(&*self.effect).chain(others)
+    }
 }

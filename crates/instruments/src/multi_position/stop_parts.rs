@@ -4,13 +4,13 @@ use gyrocal_statistics::math::ln;
 use gyrocal_statistics::upper_median;
 use nalgebra::{DMatrix, DVector};
 
-use super::levels::Levels;
 use super::positions::Positions;
-use super::regression::Fit;
+use super::regression::chi_square;
 use super::terms::{Term, response};
 use crate::interval_noise::{flicker, walk};
 
-/// Most parts of all stops together: a covariance is factored at each level.
+/// Most parts of all stops together: a covariance is factored at each level of flicker and walk. More stops than these
+/// have one part each.
 const MOST_PARTS: usize = 64;
 
 /// Logarithm of the longest time of the flicker over the duration of a test.
@@ -40,6 +40,19 @@ pub(super) struct StopParts {
     quantisation: Vec<f64>,
     flicker: DMatrix<f64>,
     walk: DMatrix<f64>,
+}
+
+/// Covariance of the rates \[deg²/h²\] without scatter of the stops, in differences of parts and means of stops.
+pub(super) struct Covariance {
+    /// Number of differences, which come first.
+    pub(super) differences: usize,
+    /// Rates, terms, and biases of logs.
+    pub(super) columns: DMatrix<f64>,
+    /// What no level changes.
+    pub(super) fixed: DMatrix<f64>,
+    /// Flicker and walk of a level of one.
+    pub(super) flicker: DMatrix<f64>,
+    pub(super) walk: DMatrix<f64>,
 }
 
 impl StopParts {
@@ -127,6 +140,12 @@ impl StopParts {
         self.stop.last().map_or(0, |last| last + 1)
     }
 
+    /// Column of a term.
+    pub(super) fn place(&self, term: Term) -> Option<usize> {
+        let mut terms = self.terms.iter();
+        terms.position(|one| *one == term).map(|at| at + 1)
+    }
+
     /// Rates, terms, and biases of the logs after the first.
     pub(super) fn columns(&self, biases: usize) -> DMatrix<f64> {
         let terms = self.terms.len();
@@ -141,23 +160,85 @@ impl StopParts {
         )
     }
 
-    /// Covariance of the rates at some levels \[deg²/h²\].
-    pub(super) fn covariance(&self, [scatter, flicker, walk]: Levels) -> DMatrix<f64> {
-        let squared = (self.unit_deg_per_h * scatter).powi(2);
-        let mut covariance = &self.flicker * (flicker * flicker) + &self.walk * (walk * walk);
+    /// Those stops that are not held out.
+    pub(super) fn without(&self, held: &[usize]) -> Self {
+        let rows = 0..self.stop.len();
+        let rows: Vec<usize> = rows
+            .filter(|row| !held.contains(&self.stop[*row]))
+            .collect();
+        fn pick<T: Copy>(values: &[T], rows: &[usize]) -> Vec<T> {
+            rows.iter().map(|row| values[*row]).collect()
+        }
+        let square = |matrix: &DMatrix<f64>| matrix.select_rows(&rows).select_columns(&rows);
+        Self {
+            terms: self.terms.clone(),
+            unit_deg_per_h: self.unit_deg_per_h,
+            rates: self.rates.select_rows(&rows),
+            by_terms: self.by_terms.select_rows(&rows),
+            stop: pick(&self.stop, &rows),
+            log: pick(&self.log, &rows),
+            white: pick(&self.white, &rows),
+            heading: pick(&self.heading, &rows),
+            quantisation: pick(&self.quantisation, &rows),
+            flicker: square(&self.flicker),
+            walk: square(&self.walk),
+        }
+    }
+
+    /// Differences of successive parts of each stop, and after these the mean of each stop: the scatter of the stops is
+    /// in the means alone, and of one size. Their number of differences is the second.
+    fn basis(&self) -> (DMatrix<f64>, usize) {
+        let count = self.stop.len();
+        let is_first = |part: usize| part == 0 || self.stop[part - 1] != self.stop[part];
+        let starts: Vec<usize> = (0..count).filter(|part| is_first(*part)).collect();
+        let differences = count - starts.len();
+        let mut basis = DMatrix::zeros(count, count);
+        let later = (0..count).filter(|part| !is_first(*part));
+        for (row, part) in later.enumerate() {
+            basis[(row, part)] = 1.0;
+            basis[(row, part - 1)] = -1.0;
+        }
+        for (row, start) in starts.iter().enumerate() {
+            let end = starts.get(row + 1).copied().unwrap_or(count);
+            let share = ((end - start) as f64).recip();
+            basis
+                .view_mut((differences + row, *start), (1, end - start))
+                .fill(share);
+        }
+        (basis, differences)
+    }
+
+    /// The covariance and the columns in differences and means.
+    pub(super) fn covariance(&self, biases: usize) -> Covariance {
+        let count = self.stop.len();
+        let mut fixed = DMatrix::zeros(count, count);
         for (i, own) in self.stop.iter().enumerate() {
-            covariance[(i, i)] += self.white[i] + self.quantisation[i];
+            fixed[(i, i)] += self.white[i] + self.quantisation[i];
             if self.stop.get(i + 1) == Some(own) {
-                covariance[(i, i + 1)] -= 0.5 * self.quantisation[i];
-                covariance[(i + 1, i)] -= 0.5 * self.quantisation[i];
+                fixed[(i, i + 1)] -= 0.5 * self.quantisation[i];
+                fixed[(i + 1, i)] -= 0.5 * self.quantisation[i];
             }
             for (j, other) in self.stop.iter().enumerate() {
                 if own == other {
-                    covariance[(i, j)] += squared + self.heading[i];
+                    fixed[(i, j)] += self.heading[i];
                 }
             }
         }
-        covariance
+        let (basis, differences) = self.basis();
+        let columns = self.columns(biases);
+        let [fixed, flicker, walk] =
+            [&fixed, &self.flicker, &self.walk].map(|of| match differences {
+                // Stops of one part are their means.
+                0 => of.clone(),
+                _ => &basis * of * basis.transpose(),
+            });
+        Covariance {
+            differences,
+            columns: basis * columns,
+            fixed,
+            flicker,
+            walk,
+        }
     }
 
     /// The largest level that the grid reaches: above the scatter that a law leaves, the further the fewer degrees of
@@ -167,14 +248,13 @@ impl StopParts {
         let variance = |row: usize| self.white[row] + self.heading[row] + self.quantisation[row];
         let rows = 0..self.rates.len();
         let weights: Vec<f64> = rows.map(|row| variance(row).sqrt().recip()).collect();
-        let place = |term: &Term| self.terms.iter().position(|one| one == term);
-        let mut chosen: Vec<usize> = law.iter().filter_map(place).map(|at| at + 1).collect();
+        let mut chosen: Vec<usize> = law.iter().filter_map(|term| self.place(*term)).collect();
         chosen.extend(1 + self.terms.len()..columns.ncols());
         let whitened = DMatrix::from_fn(columns.nrows(), chosen.len(), |i, j| {
             weights[i] * columns[(i, chosen[j])]
         });
         let rates = DVector::from_fn(columns.nrows(), |i, _| weights[i] * self.rates[i]);
-        let Some(fit) = Fit::exact(&whitened, &rates) else {
+        let Some(left) = chi_square(&whitened, &rates) else {
             return 0.0;
         };
         // Without stops to spare the parts within them alone tell a level.
@@ -186,7 +266,7 @@ impl StopParts {
             return 0.0;
         }
         let spare = spare as f64;
-        (fit.chi_square / spare).sqrt() * (2.0 + 20.0 / spare)
+        (left / spare).sqrt() * (2.0 + 20.0 / spare)
     }
 }
 

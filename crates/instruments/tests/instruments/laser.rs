@@ -1,6 +1,8 @@
 //! Multi-position tests of gyros whose angles are counted in steps.
 
-use gyrocal_instruments::multi_position::{TumbleResult, few_position_test, prepare_logs};
+use gyrocal_instruments::multi_position::{
+    MultiPositionSettings, TumbleResult, multi_position_test, prepare_logs,
+};
 use gyrocal_instruments::rates::{RateSettings, evaluate_rates};
 use gyrocal_instruments::{Description, Log};
 use nalgebra::Vector3;
@@ -57,8 +59,9 @@ fn one_number_has_one_sigma() {
             (log, vec![whole])
         });
         let prepared = prepare_logs(&stops, &description()).unwrap();
-        let report = few_position_test(&prepared.positions, 0.01).unwrap();
-        let of_stops = &report.gyros[0].coefficients[0];
+        let report =
+            multi_position_test(&prepared.positions, &MultiPositionSettings::default()).unwrap();
+        let of_stops = &report.gyros[0].extended.coefficients[0];
         ratios += of_stops.sigma / of_rates.sigma / UNITS as f64;
         squares += ((of_stops.estimate - BIAS_DEG_PER_H) / of_stops.sigma).powi(2);
     }
@@ -78,8 +81,9 @@ fn signs_against_the_earth_are_told() {
             (log, vec![whole])
         });
         let prepared = prepare_logs(&stops, &description()).unwrap();
-        let report = few_position_test(&prepared.positions, 0.01).unwrap();
-        TumbleResult::of_few(&prepared, report).earth_is_reversed
+        let report =
+            multi_position_test(&prepared.positions, &MultiPositionSettings::default()).unwrap();
+        TumbleResult::of(&prepared, report).earth_is_reversed
     };
     assert!(!is_reversed(&logs));
     for log in &mut logs {

@@ -1,7 +1,7 @@
 //! The first screen of a multi-position test.
 
 use gyrocal_document::{Screen, Standing};
-use gyrocal_instruments::multi_position::{FewPositionReport, MultiPositionReport, SensorReport};
+use gyrocal_instruments::multi_position::{Finding, MultiPositionReport, SensorReport};
 use gyrocal_statistics::format;
 use gyrocal_words::{counted, few, joined};
 
@@ -18,23 +18,14 @@ const NAMES_SHOWN: usize = 3;
 /// What the nominal law lacks, how sure that is, and what it changes.
 pub(super) fn first(answer: &TumbleAnswer<'_>) -> Screen {
     let result = answer.result;
-    let mut screen = Screen::default();
-    if let Some(report) = &result.test {
-        screen = many(report);
-    }
-    if let Some(report) = &result.few_positions {
-        screen = few_positions(report);
-    }
+    let report = &result.test;
+    let mut screen = law(report);
     if result.earth_is_reversed {
         let law = screen;
         screen = against_the_earth();
         screen.facts.extend(law.facts);
     }
-    if result
-        .few_positions
-        .as_ref()
-        .is_none_or(FewPositionReport::tells_noise)
-    {
+    if report.tells_noise() {
         let words = format!(
             "{} of sound instruments would show any term by chance",
             format::percent(answer.false_alarm)
@@ -83,22 +74,7 @@ fn saturated(sensors: &SensorReport) -> String {
     }
 }
 
-/// A term with its estimate and sigma, unit, p-value, and the names of what it may also be.
-type Term<'a> = (&'a str, [f64; 2], &'a str, f64, Vec<&'a str>);
-
-/// The terms of a report with the name of each alternative: reports of many and of few positions are two types.
-macro_rules! terms {
-    ($report:expr, $name:expr) => {{
-        let terms = $report.findings.iter().map(|one| -> Term<'_> {
-            let names = one.alternatives.iter().map($name).collect();
-            let estimate = [one.estimate, one.sigma];
-            (&one.effect, estimate, &one.unit, one.p_value, names)
-        });
-        terms.collect::<Vec<_>>()
-    }};
-}
-
-fn verdict(terms: &[Term<'_>]) -> Screen {
+fn verdict(terms: &[Finding]) -> Screen {
     let mut screen = match terms.len() {
         0 => Screen::new(
             Standing::Good,
@@ -110,13 +86,18 @@ fn verdict(terms: &[Term<'_>]) -> Screen {
             Screen::new(Standing::Bad, "TERMS MISSING", what)
         }
     };
-    for (effect, [estimate, sigma], unit, p, names) in terms.iter().take(TERMS_SHOWN) {
+    for one in terms.iter().take(TERMS_SHOWN) {
+        let names: Vec<&str> = one.alternatives.iter().map(|one| &*one.effect).collect();
         let others = match &names[..] {
             [] => "nothing else of the catalogue".to_owned(),
             names => format!("may also be {}", few(names, NAMES_SHOWN)),
         };
-        let (estimate, p) = (format::with_sigma(*estimate, *sigma), format::p_value(*p));
-        screen.fact(effect, format!("{estimate} {unit}, {p}; {others}"));
+        let estimate = format::with_sigma(one.estimate, one.sigma);
+        let p = format::p_value(one.p_value);
+        screen.fact(
+            &one.effect,
+            format!("{estimate} {}, {p}; {others}", one.unit),
+        );
     }
     if terms.len() > TERMS_SHOWN {
         screen.fact("and", format!("{} more", terms.len() - TERMS_SHOWN));
@@ -124,8 +105,15 @@ fn verdict(terms: &[Term<'_>]) -> Screen {
     screen
 }
 
-fn many(report: &MultiPositionReport) -> Screen {
-    let mut screen = verdict(&terms!(report, |other| &*other.effect));
+fn law(report: &MultiPositionReport) -> Screen {
+    let mut screen = match report.tells_noise() {
+        true => verdict(&report.findings),
+        false => Screen::new(
+            Standing::Doubtful,
+            "NOT TESTED",
+            "too few stops to tell a term from the noise between them",
+        ),
+    };
     for one in &report.log_biases {
         let differences = one.differences_deg_per_h.iter().zip(&one.sigmas_deg_per_h);
         let differences = differences.map(|(one, sigma)| format::with_sigma(*one, *sigma));
@@ -134,7 +122,7 @@ fn many(report: &MultiPositionReport) -> Screen {
              evaluated alone",
             one.gyro,
             joined(differences, ", "),
-            format::p_value(one.test.p_value)
+            format::p_value(one.p_value)
         );
         screen.fact("logs differ", words);
     }
@@ -151,39 +139,9 @@ fn many(report: &MultiPositionReport) -> Screen {
         );
         screen.fact("what they do", words);
     }
-    let extended = report.gyros.iter().map(|gyro| {
-        let law = &gyro.extended;
-        format!("{} {}", gyro.gyro, format::short(law.excess_deg_per_h, 2))
-    });
-    let extended = joined(extended, ", ");
-    let words = format!("scatter beyond the noise of the stops, deg/h: {extended}");
-    screen.fact("left over", words);
-    let controls = &report.controls;
-    let [found, of] = [controls.shuffles_with_findings, controls.shuffles];
-    let words = format!("terms found in {found} of {of} data sets with permuted stops");
-    screen.fact("controls", words);
-    screen
-}
-
-fn few_positions(report: &FewPositionReport) -> Screen {
-    let mut screen = match report.tells_noise() {
-        true => verdict(&terms!(report, |name| &**name)),
-        false => Screen::new(
-            Standing::Doubtful,
-            "NOT TESTED",
-            "too few stops to tell a term from the noise between them",
-        ),
-    };
-    for gyro in &report.gyros {
-        let law = gyro.coefficients.iter().take(NAMES_SHOWN).map(|one| {
-            let size = format::with_sigma(one.estimate, one.sigma);
-            format!("{} {size} {}", one.name, one.unit)
-        });
-        screen.fact(&gyro.gyro, joined(law, ", "));
-        screen.fact("not determined", few(&gyro.undetermined, NAMES_SHOWN));
-    }
+    laws(report, &mut screen);
     let between = report.gyros.iter().map(|gyro| {
-        let levels = gyro.noise.scatter_deg_per_h;
+        let levels = gyro.extended.noise.scatter_deg_per_h;
         let [median, most] = levels.map(|level| format::short(level, 2));
         format!("{} {median} (at most {most})", gyro.gyro)
     });
@@ -202,4 +160,21 @@ fn few_positions(report: &FewPositionReport) -> Screen {
         );
     }
     screen
+}
+
+/// The law of each gyro, and what the positions do not determine. Where the gain of the terms is told the screen has no
+/// place for them.
+fn laws(report: &MultiPositionReport, screen: &mut Screen) {
+    if report.cross_validation.is_some() {
+        return;
+    }
+    for gyro in &report.gyros {
+        let law = gyro.extended.coefficients.iter().take(NAMES_SHOWN);
+        let law = law.map(|one| {
+            let size = format::with_sigma(one.estimate, one.sigma);
+            format!("{} {size} {}", one.name, one.unit)
+        });
+        screen.fact(&gyro.gyro, joined(law, ", "));
+        screen.fact("not determined", few(&gyro.undetermined, NAMES_SHOWN));
+    }
 }
