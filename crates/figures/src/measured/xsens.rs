@@ -9,7 +9,7 @@ use gyrocal_instruments::{Description, Log, StopSettings, find_stops};
 use gyrocal_record::AXES;
 
 use super::{Measured, data};
-use crate::harness::{Error, Figure};
+use crate::harness::Error;
 
 pub(super) fn measure(measured: &mut Measured) -> Result<(), Error> {
     let begin = Instant::now();
