@@ -11,6 +11,8 @@
 //! A number that a record is too short for, or that was not computed, is `None`; no number is not finite.
 //! [`write_text`] refuses an answer that does not read back.
 //!
+//! [`PlantFit`] is the answer of a fit alone, without a search: `gyrocal plant fit --json`.
+//!
 //! # Example
 //!
 //! ```no_run
@@ -38,6 +40,7 @@ mod audit;
 mod coefficients;
 mod filter;
 mod finding;
+mod fit;
 mod gain;
 mod limits;
 mod magnitude;
@@ -63,6 +66,9 @@ pub use filter::FilterTest;
 pub use finding::{
     Alternative, AlternativeKind, Experiment, ExperimentKind, Finding, FindingKind, Parameter,
     Separation,
+};
+pub use fit::{
+    ComparedFit, Correlation, LaterFit, OutputFit, PlantComparison, PlantFit, SimulationError,
 };
 pub use gain::{
     CoefficientShift, Compensation, FreeRun, Gain, OutputError, Prediction, Validation,

@@ -140,6 +140,10 @@ fn checked_inputs<'a>(
     inputs.extend(arguments.next.iter().map(PathBuf::as_path));
     let json = arguments.json.as_deref();
     arguments.views.check(&inputs, json, &[])?;
-    refuse_itself(arguments.validate.as_deref(), &arguments.records)?;
+    refuse_itself(
+        "--validate",
+        arguments.validate.as_deref(),
+        &arguments.records,
+    )?;
     Ok(inputs)
 }
