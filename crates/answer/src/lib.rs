@@ -80,7 +80,7 @@ pub use limits::{
 pub use magnitude::MagnitudeTest;
 pub use next_run::{NextRun, NextSigma, ToldApart};
 pub use path::{PathError, PathStep, Refusal};
-pub use read::{read, read_platform, read_platform_text, read_text};
+pub use read::{read, read_fit, read_platform, read_platform_text, read_text};
 pub use records::{RecordSize, SizeChoice, SizesByRecord};
 pub use residual_test::{
     OutputTest, ResidualCorrelation, ResidualLine, ResidualTest, ResidualVerdict,

@@ -6,7 +6,7 @@ use crate::description::Description;
 use crate::error::PlantError;
 use crate::fit::fit;
 use crate::loaded::LoadedPlant;
-use crate::several::NamedRecord;
+use crate::record::NamedRecord;
 
 /// Fits each of several plants, by name, to one record, as [`fit()`] does; a nominal plant and the extended one, or rival
 /// equations of the same plant. `read` reads the record and the later one for a plant. What `first_rows` and `at` are is

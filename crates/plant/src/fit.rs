@@ -14,8 +14,7 @@ use crate::identifiability::Determined;
 use crate::left_out::left_out_rms;
 use crate::loaded::LoadedPlant;
 use crate::prediction::horizon_s;
-use crate::record::PlantRecord;
-use crate::several::NamedRecord;
+use crate::record::{NamedRecord, PlantRecord};
 use crate::simulation::output_fits;
 
 /// Estimates of the noise and of what is fitted in it, one after the other: the noise of an output is its weight.
@@ -46,14 +45,11 @@ pub struct Fit {
 /// ```no_run
 /// use std::path::Path;
 ///
-/// use gyrocal_plant::{ColumnMap, LoadedPlant, NamedRecord, fit};
+/// use gyrocal_plant::{ColumnMap, LoadedPlant, fit};
 ///
 /// let plant = LoadedPlant::read(Path::new("plant.json"))?;
 /// let columns = ColumnMap::read(Path::new("columns.toml"))?;
-/// let record = NamedRecord {
-///     name: "record.csv".to_owned(),
-///     record: columns.record(plant.description(), Path::new("record.csv"))?,
-/// };
+/// let record = columns.named_record(plant.description(), Path::new("record.csv"))?;
 /// let fit = fit(&plant, record, None, 0, &mut |_, _| ())?;
 /// for one in &fit.answer.coefficients.nominal {
 ///     println!("{} {} ± {} {}", one.name, one.estimate, one.sigma, one.unit);

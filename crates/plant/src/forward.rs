@@ -11,7 +11,7 @@ use crate::error::PlantError;
 use crate::linearised::Linearised;
 use crate::loaded::LoadedPlant;
 use crate::problem::Problem;
-use crate::several::NamedRecord;
+use crate::record::NamedRecord;
 use crate::solve::Solver;
 use crate::starts::substeps;
 
@@ -37,6 +37,14 @@ pub struct SimulatedCourse {
     pub values: Vec<f64>,
     /// Standard deviations of these from those of parameters and initial states, to first order.
     pub sigmas: Vec<f64>,
+}
+
+impl SimulatedCourse {
+    /// The largest standard deviation, in `unit`.
+    #[must_use]
+    pub fn largest_sigma(&self) -> f64 {
+        self.sigmas.iter().copied().fold(0.0, f64::max)
+    }
 }
 
 impl Simulation {

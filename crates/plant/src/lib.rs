@@ -95,6 +95,6 @@ pub use generated::Generated;
 pub use gyrocal_hypothesis::SearchOptions;
 pub use interpreted::Interpreted;
 pub use loaded::LoadedPlant;
-pub use record::PlantRecord;
+pub use record::{NamedRecord, PlantRecord};
 pub use series::{OutputCorrelation, OutputSeries, RecordSeries};
-pub use several::{DiagnosedRecords, NamedRecord, diagnose_records};
+pub use several::{DiagnosedRecords, diagnose_records};

@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use gyrocal_instruments::ResultFile;
-use gyrocal_pages::{of_comparison, of_fit};
+use gyrocal_pages::{Part, of_comparison, of_fit};
 use gyrocal_plant::description::Description;
 use gyrocal_plant::{ColumnMap, LoadedPlant, NamedRecord, PlantError, compare, fit};
-use gyrocal_record::printable_path;
+use gyrocal_record::{Manifest, printable_path};
 use serde::Serialize;
 
 use crate::outputs::{self, manifest, refuse_itself};
@@ -55,12 +55,17 @@ pub(super) struct CompareArguments {
 }
 
 impl Files {
-    /// Refuses outputs that would overwrite inputs, which are returned with these.
-    fn checked<'a>(&'a self, inputs: &[&'a Path]) -> Result<Vec<&'a Path>, Failure> {
-        let mut inputs = inputs.to_vec();
-        inputs.push(&self.columns);
-        inputs.extend(self.later.as_deref());
+    /// The files that are read, the record first.
+    fn checked<'a>(
+        &'a self,
+        record: &'a PathBuf,
+        plants: impl Iterator<Item = &'a Path>,
+    ) -> Result<Vec<&'a Path>, Failure> {
+        let later = self.later.as_deref();
+        let inputs = [record.as_path(), &self.columns].into_iter();
+        let inputs: Vec<&Path> = inputs.chain(later).chain(plants).collect();
         outputs::check(&inputs, self.json.as_deref(), None)?;
+        refuse_itself("--later", later, std::slice::from_ref(record))?;
         Ok(inputs)
     }
 
@@ -71,18 +76,24 @@ impl Files {
         record: &Path,
     ) -> Result<(NamedRecord, Option<NamedRecord>), PlantError> {
         let columns = ColumnMap::read(&self.columns)?;
-        let named = |path: &Path| {
-            Ok::<_, PlantError>(NamedRecord {
-                name: printable_path(path),
-                record: columns.record(description, path)?,
-            })
-        };
+        let named = |path: &Path| columns.named_record(description, path);
         let later = self.later.as_deref().map(named).transpose()?;
         Ok((named(record)?, later))
     }
 
-    fn shown(&self, mut shown: Reply, file: &impl Serialize) -> Result<Reply, Failure> {
-        shown.write_json(self.json.as_deref(), file)?;
+    /// Does the work, and shows and writes its answer.
+    fn answered<T: Serialize>(
+        &self,
+        inputs: &[&Path],
+        work: impl FnOnce(&mut dyn FnMut(&'static str, f64)) -> Result<T, PlantError>,
+        page: impl FnOnce(&T, &Manifest) -> Part,
+    ) -> Result<Reply, Failure> {
+        let mut progress = Progress::waiting("fitting", 0);
+        let answer = work(&mut |stage, share| progress.stage(stage, share))?;
+        drop(progress);
+        let manifest = manifest("", 0, inputs)?;
+        let mut shown = Reply::of_part(&page(&answer, &manifest));
+        shown.write_json(self.json.as_deref(), &ResultFile::new(manifest, &answer))?;
         Ok(shown)
     }
 }
@@ -90,54 +101,30 @@ impl Files {
 /// Runs `fit`; `file` is that of the plant, if it is read from one.
 pub(super) fn run(
     file: Option<&Path>,
-    arguments: &FitArguments,
+    FitArguments { record, files }: &FitArguments,
     plant: impl FnOnce() -> Result<LoadedPlant, PlantError>,
 ) -> Result<Reply, Failure> {
-    let FitArguments { record, files } = arguments;
-    let own: Vec<&Path> = [Some(record.as_path()), file]
-        .into_iter()
-        .flatten()
-        .collect();
-    let inputs = files.checked(&own)?;
-    refuse_itself(
-        "--later",
-        files.later.as_deref(),
-        std::slice::from_ref(record),
-    )?;
+    let inputs = files.checked(record, file.into_iter())?;
     let plant = plant()?;
     let (record, later) = files.read(plant.description(), record)?;
-    let mut progress = Progress::waiting("fitting", record.record.len());
-    let at = &mut |stage: &'static str, share| progress.stage(stage, share);
-    let answer = fit(&plant, record, later, files.first_rows, at)?.answer;
-    drop(progress);
-    let manifest = manifest("", 0, &inputs)?;
-    let shown = Reply::of_part(&of_fit(&answer, &manifest));
-    files.shown(shown, &ResultFile::new(manifest, &answer))
+    let work = |at: &mut dyn FnMut(&'static str, f64)| {
+        Ok(fit(&plant, record, later, files.first_rows, at)?.answer)
+    };
+    files.answered(&inputs, work, of_fit)
 }
 
 /// Runs `compare`.
-pub(super) fn run_compare(arguments: &CompareArguments) -> Result<Reply, Failure> {
-    let CompareArguments { paths, files } = arguments;
-    let own: Vec<&Path> = paths.iter().map(PathBuf::as_path).collect();
-    let inputs = files.checked(&own)?;
+pub(super) fn run_compare(
+    CompareArguments { paths, files }: &CompareArguments,
+) -> Result<Reply, Failure> {
     let Some((record, plants)) = paths.split_last() else {
         return Err(Failure::Usage("give plants and a record".to_owned()));
     };
-    refuse_itself(
-        "--later",
-        files.later.as_deref(),
-        std::slice::from_ref(record),
-    )?;
-    let plants = plants
-        .iter()
-        .map(|path| Ok((printable_path(path), LoadedPlant::read(path)?)));
+    let inputs = files.checked(record, plants.iter().map(PathBuf::as_path))?;
+    let plants = plants.iter();
+    let plants = plants.map(|path| Ok((printable_path(path), LoadedPlant::read(path)?)));
     let plants: Vec<(String, LoadedPlant)> = plants.collect::<Result<_, PlantError>>()?;
-    let mut progress = Progress::waiting("comparing", plants.len());
-    let at = &mut |stage: &'static str, share| progress.stage(stage, share);
     let read = |description: &Description| files.read(description, record);
-    let compared = compare(&plants, read, files.first_rows, at)?;
-    drop(progress);
-    let manifest = manifest("", 0, &inputs)?;
-    let shown = Reply::of_part(&of_comparison(&compared, &manifest));
-    files.shown(shown, &ResultFile::new(manifest, &compared))
+    let work = |at: &mut dyn FnMut(&'static str, f64)| compare(&plants, read, files.first_rows, at);
+    files.answered(&inputs, work, of_comparison)
 }
