@@ -108,7 +108,7 @@ pub(super) fn run(
     let plant = plant()?;
     let (record, later) = files.read(plant.description(), record)?;
     let work = |at: &mut dyn FnMut(&'static str, f64)| {
-        Ok(fit(&plant, record, later, files.first_rows, at)?.answer)
+        fit(&plant, record, later, files.first_rows, at).map(|fit| fit.answer)
     };
     files.answered(&inputs, work, of_fit)
 }
