@@ -18,7 +18,7 @@ pub struct Coefficients {
     /// The members of the confidence sets, the likeliest first; empty if there is only one.
     pub members: Vec<SetMember>,
     /// Covariance of the extended estimates, row by row, in products of their units; of the nominal
-    /// ones if no effect was accepted; empty of a plant.
+    /// ones if no effect was accepted; empty of a diagnosis of a plant.
     pub covariance: Vec<Vec<f64>>,
 }
 

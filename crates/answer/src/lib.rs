@@ -11,6 +11,8 @@
 //! A number that a record is too short for, or that was not computed, is `None`; no number is not finite.
 //! [`write_text`] refuses an answer that does not read back.
 //!
+//! [`PlantFit`] is the answer of a fit alone, without a search: `gyrocal plant fit --json`.
+//!
 //! # Example
 //!
 //! ```no_run
@@ -38,6 +40,7 @@ mod audit;
 mod coefficients;
 mod filter;
 mod finding;
+mod fit;
 mod gain;
 mod limits;
 mod magnitude;
@@ -64,6 +67,9 @@ pub use finding::{
     Alternative, AlternativeKind, Experiment, ExperimentKind, Finding, FindingKind, Parameter,
     Separation,
 };
+pub use fit::{
+    ComparedFit, Correlation, LaterFit, OutputFit, PlantComparison, PlantFit, SimulationError,
+};
 pub use gain::{
     CoefficientShift, Compensation, FreeRun, Gain, OutputError, Prediction, Validation,
 };
@@ -74,7 +80,7 @@ pub use limits::{
 pub use magnitude::MagnitudeTest;
 pub use next_run::{NextRun, NextSigma, ToldApart};
 pub use path::{PathError, PathStep, Refusal};
-pub use read::{read, read_platform, read_platform_text, read_text};
+pub use read::{read, read_fit, read_platform, read_platform_text, read_text};
 pub use records::{RecordSize, SizeChoice, SizesByRecord};
 pub use residual_test::{
     OutputTest, ResidualCorrelation, ResidualLine, ResidualTest, ResidualVerdict,

@@ -5,7 +5,7 @@ use std::path::Path;
 use gyrocal_record::{Error, InputErrorKind, SourceText};
 use serde::Deserialize;
 
-use crate::{Answer, SCHEMA_VERSION, Subject};
+use crate::{Answer, PlantFit, SCHEMA_VERSION, Subject};
 
 /// The key that results of any version have.
 #[derive(Deserialize)]
@@ -75,16 +75,32 @@ pub fn read_platform_text(source: &SourceText) -> Result<Answer, Error> {
     ))
 }
 
+/// Reads the fit of a plant, that `gyrocal plant fit --json` wrote.
+///
+/// # Errors
+/// [`Error::Unreadable`], and [`Error::Input`] with line and column if it is no such fit.
+#[inline]
+pub fn read_fit(path: &Path) -> Result<PlantFit, Error> {
+    let source = SourceText::read(path)?;
+    let read = serde_json::from_str(source.text());
+    read.map_err(|error| no_result(&source, &error, ["fit of a plant", "gyrocal plant fit"]))
+}
+
 fn no_diagnosis(source: &SourceText, error: &serde_json::Error) -> Error {
+    no_result(source, error, ["diagnosis", "gyrocal diagnose"])
+}
+
+/// Refuses what is not the result of some work, which a command writes.
+fn no_result(source: &SourceText, error: &serde_json::Error, [work, command]: [&str; 2]) -> Error {
     let place = offset(source.text(), error.line(), error.column());
     let reason = error.to_string();
     let reason = reason.split(" at line ").next().unwrap_or_default();
     source.error(
         InputErrorKind::Syntax,
         place..place,
-        format!("JSON that is not the result of a diagnosis ({reason})"),
-        "the result of `gyrocal diagnose --json`",
-        "write it again with `gyrocal diagnose`",
+        format!("JSON that is not the result of a {work} ({reason})"),
+        format!("the result of `{command} --json`"),
+        format!("write it again with `{command}`"),
     )
 }
 

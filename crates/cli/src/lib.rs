@@ -84,8 +84,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     }
 }
 
-/// Runs the program of a package for one plant: `diagnose` and `extend`, as `gyrocal plant` does. Returns
-/// the exit code of the process.
+/// Runs the program of a package for one plant: `fit`, `simulate`, `diagnose` and `extend`, as `gyrocal plant` does.
+/// Returns the exit code of the process.
 pub fn run_plant(
     arguments: impl IntoIterator<Item = OsString>,
     plant: Result<LoadedPlant, PlantError>,

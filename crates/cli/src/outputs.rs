@@ -121,12 +121,16 @@ fn comes_with(path: &Path, made: &Path) -> bool {
     folder.is_some_and(|folder| identity(made).starts_with(folder))
 }
 
-/// Refuses a later record that is one of the records.
-pub(crate) fn refuse_itself(later: Option<&Path>, records: &[PathBuf]) -> Result<(), Failure> {
+/// Refuses a later record, which an option gives, that is one of the records.
+pub(crate) fn refuse_itself(
+    option: &str,
+    later: Option<&Path>,
+    records: &[PathBuf],
+) -> Result<(), Failure> {
     match later {
         Some(later) if records.iter().any(|one| identity(one) == identity(later)) => {
             Err(Failure::Usage(format!(
-                "--validate {} is the record itself: a later one has had no part in the models",
+                "{option} {} is the record itself: a later one has had no part in the models",
                 printable_path(later)
             )))
         }

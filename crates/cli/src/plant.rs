@@ -1,10 +1,12 @@
-//! `gyrocal plant`: diagnosis of records of any plant. The commands of a package for one plant are here as
+//! `gyrocal plant`: fits and diagnosis of records of any plant. The commands of a package for one plant are here as
 //! well.
 
 mod derive;
 mod diagnose;
 mod extend;
+mod fit;
 mod new;
+mod simulate;
 
 use std::path::PathBuf;
 
@@ -16,7 +18,7 @@ use crate::{Failure, Reply, terminal};
 
 pub(crate) use new::{NewPlantArguments, run as run_new};
 
-/// Derive, diagnose and extend any plant that a Python script declares.
+/// Derive, fit, compare, simulate, diagnose and extend any plant that a Python script declares.
 ///
 /// docs/any-plant.md leads from an equation and a CSV file to a named cause and its gain.
 #[derive(Debug, Args)]
@@ -27,9 +29,12 @@ pub(crate) struct PlantArguments {
 
 #[derive(Debug, Subcommand)]
 enum PlantCommand {
+    Compare(fit::CompareArguments),
     Derive(derive::DeriveArguments),
-    Diagnose(PlantDiagnoseArguments),
+    Diagnose(OfPlant<diagnose::RecordArguments>),
     Extend(extend::ExtendArguments),
+    Fit(OfPlant<fit::FitArguments>),
+    Simulate(OfPlant<simulate::SimulateArguments>),
 }
 
 /// The commands of a package for one plant.
@@ -46,16 +51,18 @@ pub(crate) struct PlantCli {
 enum OwnCommand {
     Diagnose(diagnose::RecordArguments),
     Extend(extend::ExtendArguments),
+    Fit(fit::FitArguments),
+    Simulate(simulate::SimulateArguments),
 }
 
-/// Find what the model of a plant lacks in a record, or in several.
+/// Arguments of a command with a plant before them.
 #[derive(Debug, Args)]
-struct PlantDiagnoseArguments {
+struct OfPlant<T: Args> {
     /// The plant: the program file that its Python script writes.
     #[arg(value_name = "PLANT.json")]
     plant: PathBuf,
     #[command(flatten)]
-    records: diagnose::RecordArguments,
+    own: T,
 }
 
 impl From<PlantError> for Failure {
@@ -73,14 +80,18 @@ impl From<gyrocal_plant_codegen::Error> for Failure {
 /// Runs the command; returns its answer.
 pub(crate) fn run(arguments: &PlantArguments) -> Result<Reply, Failure> {
     match &arguments.command {
+        PlantCommand::Compare(arguments) => fit::run_compare(arguments),
         PlantCommand::Derive(arguments) => derive::run(arguments),
-        PlantCommand::Diagnose(arguments) => {
-            let file = Some(arguments.plant.as_path());
-            diagnose::run(file, &arguments.records, || {
-                LoadedPlant::read(&arguments.plant)
-            })
+        PlantCommand::Diagnose(OfPlant { plant, own }) => {
+            diagnose::run(Some(plant), own, || LoadedPlant::read(plant))
         }
         PlantCommand::Extend(arguments) => extend::run(arguments),
+        PlantCommand::Fit(OfPlant { plant, own }) => {
+            fit::run(Some(plant), own, || LoadedPlant::read(plant))
+        }
+        PlantCommand::Simulate(OfPlant { plant, own }) => {
+            simulate::run(Some(plant), own, || LoadedPlant::read(plant))
+        }
     }
 }
 
@@ -92,5 +103,7 @@ pub(crate) fn run_own(
     match &cli.command {
         OwnCommand::Diagnose(arguments) => diagnose::run(None, arguments, || plant),
         OwnCommand::Extend(arguments) => extend::run(arguments),
+        OwnCommand::Fit(arguments) => fit::run(None, arguments, || plant),
+        OwnCommand::Simulate(arguments) => simulate::run(None, arguments, || plant),
     }
 }

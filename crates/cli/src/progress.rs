@@ -4,15 +4,12 @@ use std::fmt::Write;
 use std::time::{Duration, Instant};
 
 use gyrocal_diagnosis::Stage;
-use indicatif::{HumanDuration, ProgressBar, ProgressState, ProgressStyle};
+use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
 use crate::terminal;
 
 /// Delay before the bar appears.
 const PATIENCE: Duration = Duration::from_secs(1);
-
-/// Number of rows that take a second or two.
-const MANY_ROWS: usize = 20_000;
 
 /// Interval at which the elapsed time is updated.
 const TICK: Duration = Duration::from_millis(200);
@@ -41,17 +38,23 @@ impl Progress {
         }
     }
 
-    /// For work without progress reports: shows the elapsed time, from the start if there are many
-    /// rows.
+    /// For work without reports of rows: shows the elapsed time, if the work takes more than a second.
     pub(crate) fn waiting(label: &'static str, rows: usize) -> Self {
         let mut progress = Self::new(label, rows);
         progress.of_stages = true;
-        if progress.wanted && rows >= MANY_ROWS {
+        if progress.wanted {
             let style = ProgressStyle::with_template("{msg} {spinner} {elapsed}");
-            let bar = ProgressBar::new_spinner()
-                .with_message(format!("{label} {rows} rows"))
+            let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden())
+                .with_message(label)
                 .with_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()));
-            bar.enable_steady_tick(TICK);
+            let later = bar.downgrade();
+            std::thread::spawn(move || {
+                std::thread::sleep(PATIENCE);
+                if let Some(bar) = later.upgrade().filter(|bar| !bar.is_finished()) {
+                    bar.set_draw_target(ProgressDrawTarget::stderr());
+                    bar.enable_steady_tick(TICK);
+                }
+            });
             progress.bar = Some(bar);
         }
         progress

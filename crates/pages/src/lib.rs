@@ -60,7 +60,7 @@ pub use gyrocal_document::{Page, Part};
 pub use monte_carlo::of_monte_carlo;
 pub use pictures::pictures;
 pub use plan::of_plan;
-pub use plant::of_plant;
+pub use plant::{of_comparison, of_fit, of_plant};
 pub use rates::of_rates;
 pub use read::{read, read_sections};
 pub use tumble::{TumbleAnswer, of_tumble};

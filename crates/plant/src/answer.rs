@@ -238,7 +238,7 @@ pub(crate) fn coefficients(
 }
 
 /// Parameters, and initial states of a record that is alone: several have initial states of their own.
-fn parameters(
+pub(crate) fn parameters(
     plant: &LoadedPlant,
     nominal: &FittedPlant,
     fitted: &FittedPlant,
@@ -264,7 +264,11 @@ fn parameters(
     coefficients(all, has_findings)
 }
 
-fn noise(plant: &LoadedPlant, fitted: &FittedPlant) -> Result<Vec<NoiseLevel>, PlantError> {
+/// Noise that the plant declares, as it is in a fit.
+pub(crate) fn noise(
+    plant: &LoadedPlant,
+    fitted: &FittedPlant,
+) -> Result<Vec<NoiseLevel>, PlantError> {
     let levels = fitted.noise_levels()?;
     let description = &plant.description;
     let outputs = description.outputs.iter().map(|one| one.id.clone());
@@ -289,15 +293,7 @@ pub(crate) fn remainder(
     let scale = searched.fitted.record().search_scale();
     let terms = searched.unmodelled.iter();
     let terms: Vec<UnmodelledTerm> = terms.map(|one| term(one, scale)).collect();
-    let whitened = searched.fitted.whitened()?;
-    let all = plant.description.outputs.iter().enumerate();
-    let tests = all.filter_map(|(index, output)| {
-        Some(OutputTest {
-            output: output.id.clone(),
-            p_value: white(&of_output(&whitened, index))?,
-        })
-    });
-    let outputs: Vec<OutputTest> = tests.collect();
+    let outputs = output_tests(&searched.fitted)?;
     let least = outputs.iter().map(|one| one.p_value).reduce(f64::min);
     let verdict = if !terms.is_empty() || outputs.iter().any(is_coloured) {
         ResidualVerdict::Unexplained
@@ -321,6 +317,19 @@ pub(crate) fn remainder(
         outputs,
         unmodelled: terms,
     })
+}
+
+/// Ljung and Box's test of the innovations of each output; none of one with too few.
+pub(crate) fn output_tests(fitted: &FittedPlant) -> Result<Vec<OutputTest>, PlantError> {
+    let whitened = fitted.whitened()?;
+    let all = fitted.loaded().description.outputs.iter().enumerate();
+    let tests = all.filter_map(|(index, output)| {
+        Some(OutputTest {
+            output: output.id.clone(),
+            p_value: white(&of_output(&whitened, index))?,
+        })
+    });
+    Ok(tests.collect())
 }
 
 /// Probability of as much correlation in white innovations; `None` of too few.

@@ -18,12 +18,12 @@ use std::collections::BTreeMap;
 use std::io::{self, Read};
 use std::path::Path;
 
-use gyrocal_record::{Error, open_text};
+use gyrocal_record::{Error, open_text, printable_path};
 use serde::Deserialize;
 
 use crate::description::{Description, Output};
 use crate::error::PlantError;
-use crate::record::PlantRecord;
+use crate::record::{NamedRecord, PlantRecord};
 
 /// A column with the unit of the plant.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
@@ -129,6 +129,36 @@ impl ColumnMap {
     /// As [`Self::record`].
     pub fn run(&self, description: &Description, path: &Path) -> Result<PlantRecord, PlantError> {
         self.rows(description, path, &[])
+    }
+
+    /// [`Self::record`] with the name of its file.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn named_record(
+        &self,
+        description: &Description,
+        path: &Path,
+    ) -> Result<NamedRecord, PlantError> {
+        Ok(NamedRecord {
+            name: printable_path(path),
+            record: self.record(description, path)?,
+        })
+    }
+
+    /// [`Self::run`] with the name of its file.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn named_run(
+        &self,
+        description: &Description,
+        path: &Path,
+    ) -> Result<NamedRecord, PlantError> {
+        Ok(NamedRecord {
+            name: printable_path(path),
+            record: self.run(description, path)?,
+        })
     }
 
     fn rows(

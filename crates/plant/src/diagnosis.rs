@@ -10,6 +10,7 @@ use crate::cross_validation::cross_validated;
 use crate::diagnosed::Diagnosed;
 use crate::error::PlantError;
 use crate::fitted::FittedPlant;
+use crate::identifiability::Determined;
 use crate::judged::{Judged, Standing, standing};
 use crate::loaded::LoadedPlant;
 use crate::prediction::{errors, horizon_s};
@@ -37,13 +38,11 @@ pub(crate) fn diagnose_from(
     options: &SearchOptions,
     start: Option<&[f64]>,
 ) -> Result<Diagnosed, PlantError> {
-    let first = FittedPlant::nominal_from(plant, record, &[], start)?;
-    let (held, directions) = first.to_hold()?;
-    let nominal = if held.is_empty() {
-        first
-    } else {
-        FittedPlant::nominal_from(plant, first.record().clone(), &held, start)?
-    };
+    let Determined {
+        nominal,
+        directions,
+        ..
+    } = FittedPlant::determined(plant, record, start)?;
     let later = later.map(Arc::new);
     let selection = nominal.selection()?;
     let Standing {

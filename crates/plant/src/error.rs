@@ -59,10 +59,29 @@ pub enum PlantError {
         /// The failure of the last start.
         reason: String,
     },
+    /// One of several models fails.
+    #[error("{name}: {reason}")]
+    OfModel {
+        /// The model.
+        name: String,
+        /// What fails.
+        reason: Box<PlantError>,
+    },
 }
 
 impl From<Singular> for PlantError {
     fn from(_: Singular) -> Self {
         Self::Singular
+    }
+}
+
+/// `None` in the place of a model that cannot be fitted.
+pub(crate) fn or_none<T>(result: Result<T, PlantError>) -> Result<Option<T>, PlantError> {
+    match result {
+        Ok(found) => Ok(Some(found)),
+        Err(PlantError::NoFit { .. } | PlantError::Singular | PlantError::NotFinite { .. }) => {
+            Ok(None)
+        }
+        Err(other) => Err(other),
     }
 }

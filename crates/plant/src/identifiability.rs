@@ -17,6 +17,7 @@ use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use crate::error::PlantError;
 use crate::fitted::FittedPlant;
+use crate::loaded::LoadedPlant;
 use crate::problem::Problem;
 use crate::record::PlantRecord;
 use crate::solve::Solver;
@@ -42,7 +43,41 @@ const NAMED: f64 = 0.02;
 /// A null direction with the indices of the nominal parameters in it, the largest part first.
 type Indexed = (NullDirection, Vec<usize>);
 
+/// A nominal model whose record determines it.
+pub(crate) struct Determined {
+    /// The fit.
+    pub(crate) nominal: FittedPlant,
+    /// The parameters that are held.
+    pub(crate) held: Vec<usize>,
+    /// The directions that they are held for, and those that priors determine.
+    pub(crate) directions: Vec<NullDirection>,
+}
+
 impl FittedPlant {
+    /// The nominal model, fitted with one parameter of each direction held that the record does not determine; `start`
+    /// as in [`Self::nominal_from`].
+    ///
+    /// # Errors
+    /// As [`Self::nominal`].
+    pub(crate) fn determined(
+        plant: &LoadedPlant,
+        record: PlantRecord,
+        start: Option<&[f64]>,
+    ) -> Result<Determined, PlantError> {
+        let first = Self::nominal_from(plant, record, &[], start)?;
+        let (held, directions) = first.to_hold()?;
+        let nominal = if held.is_empty() {
+            first
+        } else {
+            Self::nominal_from(plant, first.record().clone(), &held, start)?
+        };
+        Ok(Determined {
+            nominal,
+            held,
+            directions,
+        })
+    }
+
     /// Directions of initial states and parameters that the record does not determine, priors aside.
     ///
     /// # Errors

@@ -14,7 +14,7 @@ use gyrocal_hypothesis::{
     FittedModel as _, SearchOptions, Searched, Selection, search, search_from,
 };
 
-use crate::error::PlantError;
+use crate::error::{PlantError, or_none};
 use crate::fitted::FittedPlant;
 use crate::left_out::{UNLISTED, by_parts};
 use crate::record::PlantRecord;
@@ -220,15 +220,4 @@ fn searched_again(
         options,
         first.proposals(),
     ))
-}
-
-/// `None` in the place of a model that cannot be fitted.
-fn or_none<T>(result: Result<T, PlantError>) -> Result<Option<T>, PlantError> {
-    match result {
-        Ok(found) => Ok(Some(found)),
-        Err(PlantError::NoFit { .. } | PlantError::Singular | PlantError::NotFinite { .. }) => {
-            Ok(None)
-        }
-        Err(other) => Err(other),
-    }
 }

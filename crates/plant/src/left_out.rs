@@ -19,6 +19,7 @@ use crate::error::PlantError;
 use crate::fitted::FittedPlant;
 use crate::problem::Problem;
 use crate::record::PlantRecord;
+use crate::simulation::{rms, squares};
 use crate::solve::Solver;
 
 /// Parts of each record. The rows before them determine its initial states in each fit.
@@ -223,39 +224,25 @@ fn part_of(record: &PlantRecord, part: usize) -> Vec<Range<usize>> {
     pieces.collect()
 }
 
-/// Sum of squares of the errors of an output over some rows, and their number.
-fn squares(
-    record: &PlantRecord,
-    simulated: &[f64],
-    output: usize,
-    rows: impl Iterator<Item = usize>,
-) -> (f64, usize) {
-    let outputs = simulated.len() / record.len().max(1);
-    let errors = rows.map(|row| {
-        let place = row * outputs + output;
-        // A missing reading is NaN; a simulation that leaves the numbers is infinitely wrong.
-        let is_missing = record.outputs[place].is_nan();
-        let error = record.outputs[place] - simulated[place];
-        (
-            is_missing,
-            if error.is_nan() { f64::INFINITY } else { error },
-        )
-    });
-    let present = errors.filter(|(is_missing, _)| !is_missing);
-    present.fold((0.0, 0), |(sum, count), (_, error)| {
-        (sum + error * error, count + 1)
-    })
-}
-
-fn rms(parts: &[(f64, usize)]) -> f64 {
-    let sum: f64 = parts.iter().map(|(sum, _)| sum).sum();
-    let count: usize = parts.iter().map(|(_, count)| count).sum();
-    (sum / count.max(1) as f64).sqrt()
+/// Root mean square errors of each output in the parts that were left out of the fit; `None` where a simulation leaves
+/// the finite numbers. Empty of a plant that declares noise of rates.
+///
+/// # Errors
+/// Those of a fit to the other parts.
+pub(crate) fn left_out_rms(fitted: &FittedPlant) -> Result<Vec<Option<f64>>, PlantError> {
+    if !fitted.loaded().description.noises.is_empty() {
+        return Ok(Vec::new());
+    }
+    let model = Model::new(fitted.clone())?;
+    let all = model.left_out.iter().map(|parts| rms(parts));
+    Ok(all
+        .map(|rms| Some(rms).filter(|rms| rms.is_finite()))
+        .collect())
 }
 
 impl FittedPlant {
     /// The same model in white noise alone, of the size that it then leaves.
-    fn in_white_noise(&self) -> Result<Self, PlantError> {
+    pub(crate) fn in_white_noise(&self) -> Result<Self, PlantError> {
         let white = self.noise.loosened(Vec::new());
         let found = self.with_noise_problem(|unknown| unknown.sizes(&white, &[]))?;
         self.in_noise(found.noise)

@@ -7,7 +7,8 @@
 //! it, or takes generated Rust ([`Generated`]) for its functions. [`diagnose`] fits the nominal model to a
 //! [`PlantRecord`], searches for the effects of the catalogue and returns them with sets, sizes,
 //! significance and, with a later record, their gain: a [`gyrocal_answer::Answer`]. [`diagnose_records`] does so
-//! for several records of one plant. `gyrocal-words` says it in words.
+//! for several records of one plant. [`fit()`] fits the nominal model alone, [`compare`] several of them beside
+//! each other, and [`simulate`] tells what is uncertain of a run. `gyrocal-words` says it in words.
 //!
 //! # How it works
 //!
@@ -44,6 +45,7 @@ mod all_noise;
 mod answer;
 mod catalogue;
 mod columns;
+mod comparison;
 mod cross_validation;
 pub mod description;
 mod diagnosed;
@@ -51,8 +53,10 @@ mod diagnosis;
 mod dynamics;
 mod error;
 mod extension;
+mod fit;
 mod fitted;
 mod fitted_noise;
+mod forward;
 mod functions;
 mod generated;
 mod identifiability;
@@ -71,22 +75,26 @@ mod problem;
 mod record;
 mod series;
 mod several;
+mod simulation;
 mod solve;
 mod starts;
 mod taken_up;
 mod tape;
 
 pub use columns::ColumnMap;
+pub use comparison::compare;
 pub use diagnosed::Diagnosed;
 pub use diagnosis::diagnose;
 pub use error::PlantError;
 pub use extension::{Extension, ExtensionTerm};
+pub use fit::{Fit, fit};
 pub use fitted::FittedPlant;
+pub use forward::{SimulatedCourse, Simulation, simulate};
 pub use functions::{Functions, OutputsAt, Point, RatesAt, Sizes, Workspace};
 pub use generated::Generated;
 pub use gyrocal_hypothesis::SearchOptions;
 pub use interpreted::Interpreted;
 pub use loaded::LoadedPlant;
-pub use record::PlantRecord;
+pub use record::{NamedRecord, PlantRecord};
 pub use series::{OutputCorrelation, OutputSeries, RecordSeries};
-pub use several::{DiagnosedRecords, NamedRecord, diagnose_records};
+pub use several::{DiagnosedRecords, diagnose_records};

@@ -22,8 +22,7 @@ use crate::later_starts::eliminated;
 use crate::lines::{Course, initial, parameters_of};
 use crate::prediction::least_prior;
 use crate::problem::Problem;
-use crate::record::PlantRecord;
-use crate::several::NamedRecord;
+use crate::record::{NamedRecord, PlantRecord};
 use crate::solve::Solver;
 use gyrocal_words::plant::mean_ratio;
 

@@ -8,7 +8,6 @@ use gyrocal_answer::OutputError;
 use gyrocal_hypothesis::FittedModel as _;
 use gyrocal_inference::Column;
 use gyrocal_statistics::math::ln;
-use gyrocal_statistics::rms_of_present;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 use crate::catalogue::Modulation;
@@ -21,6 +20,7 @@ use crate::lines::{Course, initial, of_parameters, parameters_of, profile};
 use crate::loaded::LoadedPlant;
 use crate::problem::Problem;
 use crate::record::PlantRecord;
+use crate::simulation::{one_step, rms, squares};
 use crate::solve::{Iterate, Solver};
 use crate::starts::led_by;
 
@@ -42,6 +42,8 @@ pub(crate) struct Prediction {
     pub(crate) log_density: f64,
     /// Simulated outputs, by rows.
     pub(crate) simulated: Vec<f64>,
+    /// The same one step ahead: see [`FittedPlant::one_step`].
+    pub(crate) one_step: Vec<f64>,
 }
 
 /// Rows that simulations go over; they begin anew with each record.
@@ -69,28 +71,20 @@ pub(crate) fn errors(
     (nominal, extended): (&[f64], &[f64]),
     rows: Range<usize>,
 ) -> Vec<OutputError> {
-    let nominal = rms(record, nominal, rows.clone());
-    let extended = rms(record, extended, rows);
-    let outputs = plant.description.outputs.iter();
-    let all = outputs.zip(nominal.into_iter().zip(extended));
-    all.map(|(output, (nominal, extended))| OutputError {
-        output: output.id.clone(),
-        unit: output.unit.clone(),
-        nominal: Some(nominal).filter(|rms| rms.is_finite()),
-        extended: Some(extended).filter(|rms| rms.is_finite()),
-    })
-    .collect()
-}
-
-/// Root mean square of measured less simulated outputs over some rows, of each output.
-fn rms(record: &PlantRecord, simulated: &[f64], rows: Range<usize>) -> Vec<f64> {
-    let outputs = simulated.len() / record.len().max(1);
-    let of = |output: usize| {
-        let places = rows.clone().map(|row| row * outputs + output);
-        let errors = places.map(|place| record.outputs[place] - simulated[place]);
-        rms_of_present(errors).0
-    };
-    (0..outputs).map(of).collect()
+    let outputs = plant.description.outputs.iter().enumerate();
+    let all = outputs.map(|(index, output)| {
+        let of = |simulated| {
+            let rms = rms(&[squares(record, simulated, index, rows.clone())]);
+            Some(rms).filter(|rms| rms.is_finite())
+        };
+        OutputError {
+            output: output.id.clone(),
+            unit: output.unit.clone(),
+            nominal: of(nominal),
+            extended: of(extended),
+        }
+    });
+    all.collect()
 }
 
 impl FittedPlant {
@@ -234,6 +228,7 @@ impl FittedPlant {
         let solution = led_by(&solver, &self.state_sizes())?;
         let course = solver.course(&solution.at.values);
         let simulated = simulated(&problem, &course, &solution.at.points);
+        let one_step = one_step(&solution.lin.pass(&solver.noise, &[]), later)?;
         let reduced = reduce(&solution.lin.pass(&solver.noise, &lines))?;
         let places: Vec<usize> = carried.iter().map(|(_, place)| *place).collect();
         let log_density = self
@@ -243,6 +238,7 @@ impl FittedPlant {
         Ok(Prediction {
             log_density,
             simulated,
+            one_step,
         })
     }
 

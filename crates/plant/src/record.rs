@@ -32,6 +32,15 @@ pub struct PlantRecord {
     pub starts: Vec<usize>,
 }
 
+/// A record with its name.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedRecord {
+    /// Its name in the answer, such as that of its file.
+    pub name: String,
+    /// The record.
+    pub record: PlantRecord,
+}
+
 impl PlantRecord {
     /// Number of rows.
     #[must_use]

@@ -11,19 +11,10 @@ use crate::diagnosis::{diagnose, diagnose_from};
 use crate::error::PlantError;
 use crate::loaded::LoadedPlant;
 use crate::prediction::errors;
-use crate::record::PlantRecord;
+use crate::record::{NamedRecord, PlantRecord};
 
 /// Consecutive rows with equal values that show that two records share them.
 const SHARED_ROWS: usize = 24;
-
-/// A record with its name.
-#[derive(Clone, Debug, PartialEq)]
-pub struct NamedRecord {
-    /// Its name in the answer, such as that of its file.
-    pub name: String,
-    /// The record.
-    pub record: PlantRecord,
-}
 
 /// The diagnosis of several records of one plant.
 pub struct DiagnosedRecords {

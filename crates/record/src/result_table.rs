@@ -1,5 +1,6 @@
 //! Tables of results as CSV and Parquet.
 
+use std::borrow::Cow;
 use std::io;
 use std::path::Path;
 
@@ -9,7 +10,7 @@ use crate::record::Record;
 /// A table of named columns of equal length.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ResultTable {
-    columns: Vec<(&'static str, Column)>,
+    columns: Vec<(Cow<'static, str>, Column)>,
 }
 
 /// A column of a table; `None` is an empty cell.
@@ -24,11 +25,12 @@ impl ResultTable {
     #[must_use]
     pub fn texts<T: Into<String>>(
         mut self,
-        name: &'static str,
+        name: impl Into<Cow<'static, str>>,
         cells: impl IntoIterator<Item = Option<T>>,
     ) -> Self {
         let cells = cells.into_iter().map(|cell| cell.map(Into::into));
-        self.columns.push((name, Column::Texts(cells.collect())));
+        self.columns
+            .push((name.into(), Column::Texts(cells.collect())));
         self
     }
 
@@ -36,13 +38,14 @@ impl ResultTable {
     #[must_use]
     pub fn numbers(
         mut self,
-        name: &'static str,
+        name: impl Into<Cow<'static, str>>,
         cells: impl IntoIterator<Item = Option<f64>>,
     ) -> Self {
         let cells = cells
             .into_iter()
             .map(|cell| cell.filter(|it| it.is_finite()));
-        self.columns.push((name, Column::Numbers(cells.collect())));
+        self.columns
+            .push((name.into(), Column::Numbers(cells.collect())));
         self
     }
 
@@ -88,7 +91,7 @@ impl ResultTable {
 
     fn to_csv(&self) -> io::Result<Vec<u8>> {
         let mut writer = csv::Writer::from_writer(Vec::new());
-        writer.write_record(self.columns.iter().map(|(name, _)| name))?;
+        writer.write_record(self.columns.iter().map(|(name, _)| name.as_bytes()))?;
         for row in 0..self.rows() {
             writer.write_record(self.columns.iter().map(|(_, column)| match column {
                 Column::Texts(cells) => cells[row].clone().unwrap_or_default(),
@@ -122,7 +125,7 @@ impl ResultTable {
         use parquet::schema::types::Type;
         use std::sync::Arc;
 
-        let field = |(name, column): &(&'static str, Column)| {
+        let field = |(name, column): &(Cow<'static, str>, Column)| {
             let (physical, logical) = match column {
                 Column::Texts(_) => (Physical::BYTE_ARRAY, Some(LogicalType::String)),
                 Column::Numbers(_) => (Physical::DOUBLE, None),

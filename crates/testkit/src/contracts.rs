@@ -18,7 +18,7 @@ const DAYS: &str = "@examples/data/three_days.csv --bench @examples/data/three_d
 /// Every command with `--json`: its words, the file of its schema without the ending, and its other
 /// arguments; those first whose results others read.
 #[rustfmt::skip] // a table
-const CONTRACTS: [(&str, &str, &[&str]); 14] = [
+const CONTRACTS: [(&str, &str, &[&str]); 16] = [
     ("allan", "allan", &[LOG]),
     ("calibrate", "calibration", &[DAYS]),
     ("characterise", "characteristics", &["--cell d8 --runs 1"]),
@@ -27,8 +27,12 @@ const CONTRACTS: [(&str, &str, &[&str]); 14] = [
     ("import strapdown", "import", &[LOG, "--out %record.csv"]),
     ("monte-carlo", "monte-carlo", &["@examples/data/three_days.scenario.toml --seeds 0..2"]),
     ("plan", "plan", &[FAULT, "--diagnosis %diagnose.json"]),
+    ("plant compare", "plant-comparison", &["@examples/duffing/plant.json @examples/duffing/plant.json",
+        "@examples/duffing/record.csv --columns @examples/duffing/columns.toml"]),
     ("plant diagnose", "diagnosis", &["@examples/duffing/plant.json @examples/duffing/record.csv",
         "--columns @examples/duffing/columns.toml --validate @examples/duffing/later.csv"]),
+    ("plant fit", "plant-fit", &["@examples/duffing/plant.json @examples/duffing/record.csv",
+        "--columns @examples/duffing/columns.toml --later @examples/duffing/later.csv"]),
     ("rates", "rates", &[LOG]),
     ("report", "uncertainty", &[FAULT, "--uncertainty --out %report.html"]),
     ("simulate", "truth", &["@examples/data/hidden_fault.scenario.toml --out %simulated.csv"]),

@@ -1,8 +1,10 @@
 //! The answer of a diagnosis of a plant in sentences.
 
+mod fit;
 mod noise;
 mod path;
 
+pub use fit::{comparison_screen, fit_screen, simulation_error};
 pub use noise::undeclared_noise;
 pub use path::{path, why};
 

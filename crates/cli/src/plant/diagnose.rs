@@ -55,19 +55,11 @@ pub(super) fn run(
     let inputs = checked_inputs(file, arguments)?;
     let plant = plant()?;
     let columns = ColumnMap::read(&arguments.columns)?;
-    let records = arguments.records.iter().map(|path| {
-        Ok(NamedRecord {
-            name: printable_path(path),
-            record: columns.record(plant.description(), path)?,
-        })
-    });
+    let records = arguments.records.iter();
+    let records = records.map(|path| columns.named_record(plant.description(), path));
     let records: Vec<NamedRecord> = records.collect::<Result<_, PlantError>>()?;
-    let next = arguments.next.iter().map(|path| {
-        Ok(NamedRecord {
-            name: printable_path(path),
-            record: columns.run(plant.description(), path)?,
-        })
-    });
+    let next = arguments.next.iter();
+    let next = next.map(|path| columns.named_run(plant.description(), path));
     let next: Vec<NamedRecord> = next.collect::<Result<_, PlantError>>()?;
     let later = match &arguments.validate {
         Some(path) => {
@@ -140,6 +132,10 @@ fn checked_inputs<'a>(
     inputs.extend(arguments.next.iter().map(PathBuf::as_path));
     let json = arguments.json.as_deref();
     arguments.views.check(&inputs, json, &[])?;
-    refuse_itself(arguments.validate.as_deref(), &arguments.records)?;
+    refuse_itself(
+        "--validate",
+        arguments.validate.as_deref(),
+        &arguments.records,
+    )?;
     Ok(inputs)
 }

@@ -3,6 +3,7 @@
 
 use std::fs;
 
+use gyrocal_answer::{PlantComparison, PlantFit};
 use gyrocal_diagnosis::WatchResult;
 use gyrocal_evaluation::{CharacteriseReport, MonteCarloReport};
 use gyrocal_instruments::multi_position::TumbleResult;
@@ -51,7 +52,12 @@ fn schemas_that_are_committed_are_those_of_the_types() {
         ),
         ("monte-carlo", written_schema::<MonteCarloReport>()),
         ("plan", gyrocal_design::schema()),
+        (
+            "plant compare",
+            written_schema::<ResultFile<PlantComparison>>(),
+        ),
         ("plant diagnose", gyrocal_answer::schema()),
+        ("plant fit", written_schema::<ResultFile<PlantFit>>()),
         ("rates", written_schema::<ResultFile<RateReport>>()),
         ("report", gyrocal_diagnosis::uncertainty_schema()),
         ("simulate", written_schema::<TruthReport>()),

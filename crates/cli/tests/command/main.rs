@@ -23,6 +23,7 @@ mod import;
 mod monte_carlo;
 mod plan;
 mod plant;
+mod plant_fit;
 mod rates;
 mod report;
 mod simulate;

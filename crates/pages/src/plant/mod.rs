@@ -1,8 +1,11 @@
 //! The page of a diagnosis of any plant.
 
+mod fit;
 mod limits;
 mod over_time;
 mod tables;
+
+pub use fit::{of_comparison, of_fit};
 
 use gyrocal_answer::Answer;
 use gyrocal_document::{Part, Section};

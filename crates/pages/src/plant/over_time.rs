@@ -1,6 +1,6 @@
 //! Outputs over time, and tests of the innovations.
 
-use gyrocal_answer::{Answer, OutputError};
+use gyrocal_answer::{Answer, NoiseLevel, OutputError, OutputTest};
 use gyrocal_document::{Chart, Item, Panel, Section, Table, TimeAxis};
 use gyrocal_plant::{Diagnosed, OutputCorrelation, OutputSeries, RecordSeries};
 use gyrocal_statistics::format::{self, p_cell};
@@ -152,7 +152,10 @@ pub(super) fn innovations(diagnosed: &Diagnosed) -> Result<Section, PageError> {
 
 /// Tests of the innovations in a table, with a chart of their correlations if it is there.
 pub(super) fn tested(answer: &Answer, chart: Option<Chart>) -> Section {
-    let mut items = vec![Item::from(tests(answer))];
+    let title =
+        "Noise, and correlation over rows that the model with all findings leaves (Ljung-Box)";
+    let tests = tests(title, &answer.noise, &answer.remainder.outputs);
+    let mut items = vec![Item::from(tests)];
     items.extend(chart.map(Item::Chart));
     section(
         "residuals",
@@ -186,10 +189,10 @@ fn correlations(found: &[OutputCorrelation]) -> Chart {
 }
 
 /// Whiteness of what is left, and noise.
-fn tests(answer: &Answer) -> Table {
-    let rows = answer.noise.iter().map(|noise| {
+pub(super) fn tests(title: &str, noise: &[NoiseLevel], left: &[OutputTest]) -> Table {
+    let rows = noise.iter().map(|noise| {
         let [low, high] = noise.interval.map(|end| format::short(end, 3));
-        let mut left = answer.remainder.outputs.iter();
+        let mut left = left.iter();
         let left = left.find(|one| one.output == noise.channel);
         [
             noise.channel.clone(),
@@ -198,8 +201,6 @@ fn tests(answer: &Answer) -> Table {
             left.map_or_else(String::new, |left| p_cell(left.p_value)),
         ]
     });
-    let title =
-        "Noise, and correlation over rows that the model with all findings leaves (Ljung-Box)";
     let heads = "noise of | > over the declared one | > 95 % interval | > p of white innovations";
     Table::of(title, heads, rows)
 }

@@ -108,7 +108,7 @@ pub(super) fn parameters(answer: &Answer) -> Option<Section> {
     ))
 }
 
-fn estimates(title: &str, all: &Coefficients) -> Estimates {
+pub(super) fn estimates(title: &str, all: &Coefficients) -> Estimates {
     let mut models = vec![(panels::NOMINAL, Tint::Nominal)];
     if all.extended.is_some() {
         models.push((panels::EXTENDED, Tint::Extended));

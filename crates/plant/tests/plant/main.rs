@@ -3,6 +3,7 @@
 
 mod coloured;
 mod duffing;
+mod fit;
 mod gauge;
 mod generated;
 mod input_errors;
