@@ -30,20 +30,32 @@ pub fn read(path: &Path) -> Result<Answer, Error> {
 /// [`Error::Input`] with line and column if the text is no result of this version.
 #[inline]
 pub fn read_text(source: &SourceText) -> Result<Answer, Error> {
+    let made_by = ["diagnosis", "gyrocal diagnose"];
+    refuse_other_version(source, SCHEMA_VERSION, made_by)?;
+    let read = serde_json::from_str(source.text());
+    read.map_err(|error| no_result(source, &error, made_by))
+}
+
+/// Refuses a result of another version than this program's.
+fn refuse_other_version(
+    source: &SourceText,
+    expected: u32,
+    made_by: [&str; 2],
+) -> Result<(), Error> {
     let text = source.text();
-    let versioned: Versioned =
-        serde_json::from_str(text).map_err(|error| no_diagnosis(source, &error))?;
-    if versioned.schema_version != SCHEMA_VERSION {
-        let place = text.find("\"schema_version\"").unwrap_or(0);
-        return Err(source.error(
-            InputErrorKind::OutOfRange,
-            place..place,
-            format!("schema_version {}", versioned.schema_version),
-            format!("{SCHEMA_VERSION}, the version of this program"),
-            "write it again with `gyrocal diagnose` of this version",
-        ));
+    let read = serde_json::from_str(text);
+    let Versioned { schema_version } = read.map_err(|error| no_result(source, &error, made_by))?;
+    if schema_version == expected {
+        return Ok(());
     }
-    serde_json::from_str(text).map_err(|error| no_diagnosis(source, &error))
+    let place = text.find("\"schema_version\"").unwrap_or(0);
+    Err(source.error(
+        InputErrorKind::OutOfRange,
+        place..place,
+        format!("schema_version {schema_version}"),
+        format!("{expected}, the version of this program"),
+        format!("write it again with `{}` of this version", made_by[1]),
+    ))
 }
 
 /// Reads the answer of a platform or of a strapdown unit, that `gyrocal diagnose --json` wrote.
@@ -75,19 +87,17 @@ pub fn read_platform_text(source: &SourceText) -> Result<Answer, Error> {
     ))
 }
 
-/// Reads the fit of a plant, that `gyrocal plant fit --json` wrote.
+/// Reads the fit of a plant, that `gyrocal plant fit --json` of this version wrote.
 ///
 /// # Errors
 /// [`Error::Unreadable`], and [`Error::Input`] with line and column if it is no such fit.
 #[inline]
 pub fn read_fit(path: &Path) -> Result<PlantFit, Error> {
     let source = SourceText::read(path)?;
+    let made_by = ["fit of a plant", "gyrocal plant fit"];
+    refuse_other_version(&source, gyrocal_record::SCHEMA_VERSION, made_by)?;
     let read = serde_json::from_str(source.text());
-    read.map_err(|error| no_result(&source, &error, ["fit of a plant", "gyrocal plant fit"]))
-}
-
-fn no_diagnosis(source: &SourceText, error: &serde_json::Error) -> Error {
-    no_result(source, error, ["diagnosis", "gyrocal diagnose"])
+    read.map_err(|error| no_result(&source, &error, made_by))
 }
 
 /// Refuses what is not the result of some work, which a command writes.

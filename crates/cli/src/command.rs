@@ -39,7 +39,7 @@ macro_rules! commands {
             /// Runs the command.
             pub(crate) fn run(&self) -> Result<Reply, Failure> {
                 match self {
-                    $(Self::$name(arguments) => $run(arguments),)+
+                    $(Self::$name(arguments) => ($run)(arguments),)+
                 }
             }
         }
@@ -50,13 +50,13 @@ commands! {
     Allan(allan::AllanArguments) => allan::run,
     Calibrate(calibrate::CalibrateArguments) => calibrate::run,
     Characterise(characterise::CharacteriseArguments) => characterise::run,
-    Completions(manual::CompletionsArguments) => manual::completions,
+    Completions(manual::CompletionsArguments) => |given| manual::completions(given, definition()),
     Diagnose(diagnose::DiagnoseArguments) => diagnose::run,
     Effects(effects::EffectsArguments) => effects::run,
     Emit(emit::EmitArguments) => emit::run,
     Extend(extend::ExtendArguments) => extend::run,
     Import(import::ImportArguments) => import::run,
-    Man(manual::ManArguments) => manual::pages,
+    Man(manual::ManArguments) => |given| manual::pages(given, definition()),
     MonteCarlo(monte_carlo::MonteCarloArguments) => monte_carlo::run,
     NewPlant(plant::NewPlantArguments) => plant::run_new,
     Plan(plan::PlanArguments) => plan::run,

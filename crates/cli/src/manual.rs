@@ -11,7 +11,6 @@ use gyrocal_record::{Outputs, printable_path};
 use miette::miette;
 
 use crate::Failure;
-use crate::command::definition;
 use crate::reply::Reply;
 
 /// Print the completions of a shell.
@@ -29,15 +28,18 @@ pub(crate) struct ManArguments {
     folder: PathBuf,
 }
 
-/// Runs `gyrocal completions`; returns the completions.
-pub(crate) fn completions(arguments: &CompletionsArguments) -> Result<Reply, Failure> {
+/// Runs `gyrocal completions` of a command line; returns the completions.
+pub(crate) fn completions(
+    arguments: &CompletionsArguments,
+    mut definition: Command,
+) -> Result<Reply, Failure> {
     let mut script = Vec::new();
-    clap_complete::generate(arguments.shell, &mut definition(), "gyrocal", &mut script);
+    clap_complete::generate(arguments.shell, &mut definition, "gyrocal", &mut script);
     Ok(String::from_utf8_lossy(&script).into_owned().into())
 }
 
-/// Runs `gyrocal man`: writes all pages or none.
-pub(crate) fn pages(arguments: &ManArguments) -> Result<Reply, Failure> {
+/// Runs `gyrocal man` of a command line: writes all pages or none.
+pub(crate) fn pages(arguments: &ManArguments, mut definition: Command) -> Result<Reply, Failure> {
     let folder = &arguments.folder;
     let refused = |reason: std::io::Error| {
         Failure::Work(miette!(
@@ -47,7 +49,6 @@ pub(crate) fn pages(arguments: &ManArguments) -> Result<Reply, Failure> {
         ))
     };
     std::fs::create_dir_all(folder).map_err(refused)?;
-    let mut definition = definition();
     definition.build();
     let mut outputs = Outputs::new();
     let mut names = Vec::new();

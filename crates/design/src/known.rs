@@ -83,11 +83,17 @@ impl<'a> Known<'a> {
                 false => problems_of(&name, problems),
             });
             summaries.push(record_summary(&record));
-            let (record, bench, averaged) = Blocks::or_rows(record, bench, axes.last());
-            if let (Some(of), Some(last)) = (averaged, summaries.last_mut()) {
-                last.averaged = Some(of);
-            }
-            sound.push((record, bench));
+            sound.push((record, Cow::Borrowed(bench)));
+        }
+        let runs = sound.iter().enumerate().map(|(place, (record, bench))| {
+            let (record, bench): (&Record, &Bench) = (record, bench);
+            (Run { record, bench }, axes.get(place))
+        });
+        let blocks = Blocks::of_all(&runs.collect::<Vec<_>>());
+        let all = sound.iter_mut().zip(&mut summaries);
+        for ((own, summary), means) in all.zip(blocks.into_iter().flatten()) {
+            summary.averaged = Some(means.report);
+            *own = (Cow::Owned(means.record), Cow::Owned(means.bench));
         }
         let runs = sound.iter();
         let runs: Vec<Run<'_>> = runs.map(|(record, bench)| Run { record, bench }).collect();

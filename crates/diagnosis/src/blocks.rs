@@ -30,8 +30,16 @@ const LONGEST_S: f64 = 60.0;
 /// Fewest rows of a block: fewer save little, and a quadratic leaves nothing of three.
 const FEWEST_ROWS: usize = 4;
 
-/// Fewest rows whose noise is tested together: of fewer a quadratic leaves too little.
+/// Most rows of a block, before which blocks are averaged again: longer stretches are no quadratics.
+const MOST_ROWS: f64 = 60.0;
+
+/// Rows whose noise is tested together over those of a block: a tone whose period is up to two blocks does not count as
+/// one of another period then. Of fewer than the least number a quadratic leaves too little.
+const TESTED: usize = 4;
 const FEWEST_TESTED: usize = 24;
+
+/// Largest over least noise of a row over that of its record, of records that are searched together.
+const ALIKE: f64 = 1.1;
 
 /// Rows of a block over the root of the variances of a value and of the walk from row to row.
 const SHARE_OF_ROOT: f64 = 0.25;
@@ -73,15 +81,46 @@ pub struct Blocks {
 
 impl Blocks {
     /// Blocks of a record if they lose nothing that matters. `None` of a strapdown unit, of a short or slow record, and
-    /// of one whose rows are not white within blocks.
+    /// of one whose rows are not white. Rows that come very fast are averaged by turns.
     #[must_use]
     pub fn of(run: &Run<'_>, axes: Option<&GyroAxes>) -> Option<Self> {
+        if axes.is_some() {
+            return None;
+        }
+        let mut found = Self::once(run)?;
+        while let Some(next) = Self::once(&found.run()) {
+            let report = AveragedReport {
+                left_out: found.report.left_out + next.report.left_out,
+                noise_ratio: found.report.noise_ratio * next.report.noise_ratio,
+                ..next.report
+            };
+            found = Self { report, ..next };
+        }
+        Some(found)
+    }
+
+    /// Blocks of records that are searched together: a row of each must tell as much, as one of the others does.
+    /// `None` if one of them has no blocks, or blocks of other noise.
+    #[must_use]
+    pub fn of_all(runs: &[(Run<'_>, Option<&GyroAxes>)]) -> Option<Vec<Self>> {
+        let all = runs.iter().map(|(run, axes)| Self::of(run, *axes));
+        let all: Vec<Self> = all.collect::<Option<_>>()?;
+        let ratios = || all.iter().map(|one| one.report.noise_ratio);
+        let [least, most] = [
+            ratios().fold(f64::INFINITY, f64::min),
+            ratios().fold(0.0, f64::max),
+        ];
+        (most <= ALIKE * least).then_some(all)
+    }
+
+    fn once(run: &Run<'_>) -> Option<Self> {
         let Run { record, bench } = *run;
         let interval_s = median_interval_s(&record.time_s);
-        if axes.is_some() || record.accel_g.len() != record.len() || interval_s.is_nan() {
+        if record.accel_g.len() != record.len() || interval_s.is_nan() || interval_s <= 0.0 {
             return None;
         }
         let longest = (LONGEST_S / interval_s).min((record.len() / FEWEST_BLOCKS) as f64);
+        let longest = longest.min(MOST_ROWS);
         let length = |noise_g: f64, walk: f64| {
             let rows = (SHARE_OF_ROOT * noise_g / walk.sqrt()).min(longest) as usize;
             (rows >= FEWEST_ROWS).then_some(rows)
@@ -94,10 +133,9 @@ impl Blocks {
         let least_g = noise_g.into_iter().fold(bench.accel_noise_g, f64::min);
         let rows = length(least_g, declared.max(shown))?;
         let jumps = jumps(record, (interval_s, rows), noise_g);
+        let tested = FEWEST_TESTED.max(TESTED * rows);
         let is_steady = jumps.len() <= MOST_JUMPS;
-        if !is_steady
-            || !Rows::new(record, (interval_s, rows.max(FEWEST_TESTED)), &jumps)?.are_white()
-        {
+        if !is_steady || !Rows::new(record, (interval_s, tested), &jumps)?.are_white() {
             return None;
         }
         let block_s = rows as f64 * interval_s;

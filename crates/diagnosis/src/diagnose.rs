@@ -38,7 +38,7 @@ use crate::series::Innovations;
 use crate::stage::Stage;
 use crate::validation::{CrossValidated, LaterPrediction, cross_validate, gain};
 use answer::Evidence;
-pub use answer::{manifest, record_summary};
+pub use answer::{manifest, record_summary, records_summary};
 pub use given::fit_effects;
 use gyro_noise::{gyro_noise_findings, over_declared};
 use gyrocal_answer::{Answer, FalseAlarmShares, Gain, RecordSummary};
@@ -49,7 +49,6 @@ pub use options::DiagnoseOptions;
 use options::{search_options, selection};
 pub use records::{
     RecordToDiagnose, RecordsDiagnosis, diagnose_records, diagnose_together, problems_of,
-    records_summary,
 };
 use shared_or_own::sizes_by_record;
 use untestable_rows::detect_outliers;
@@ -179,7 +178,9 @@ fn diagnose_sound<'a>(
     setup: Vec<SetupProblem>,
     watch: &mut dyn FnMut(Stage),
 ) -> Result<Diagnosis<'a>, DiagnosisError> {
-    let blocks = Blocks::of(&Run { record, bench }, axes).filter(|_| options.filter.is_none());
+    let run = Run { record, bench };
+    let reads_rows = options.filter.is_some();
+    let blocks = (!reads_rows).then(|| Blocks::of(&run, axes)).flatten();
     if let Some(blocks) = blocks {
         let Run {
             record: means,

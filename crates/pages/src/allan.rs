@@ -8,9 +8,9 @@ use gyrocal_record::Manifest;
 use gyrocal_statistics::allan::NoiseFit;
 use gyrocal_statistics::format;
 
-use crate::diagnosis::section;
 use crate::origin::{file_name, origin};
 use crate::panels::line;
+use crate::words::section;
 
 /// The page of Allan deviations; `clock` is what there is to tell of the clock of the log.
 #[must_use]

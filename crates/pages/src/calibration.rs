@@ -6,12 +6,13 @@ use gyrocal_document::{EstimateRow, Estimates, Item, Part, Section, Table, Tint}
 use gyrocal_record::{Bench, CalibrationReport, Coefficient, Record};
 use gyrocal_words::{calibration, calibration_screen};
 
+use crate::diagnosis::coefficients;
 use crate::diagnosis::open_loop::{self, Simulated};
-use crate::diagnosis::{coefficients, section};
 use crate::error::PageError;
 use crate::origin::{file_name, origin};
 use crate::panels;
 use crate::words::listed;
+use crate::words::section;
 
 /// A calibrated record with the fit of the nominal model to it alone, for the charts over time.
 pub struct CalibratedRecord<'a, 'b> {

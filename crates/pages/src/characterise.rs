@@ -6,8 +6,8 @@ use gyrocal_document::{List, Part, Section, Table};
 use gyrocal_evaluation::{CellReport, CharacteriseReport, Characteristic};
 use gyrocal_statistics::Proportion;
 
-use crate::diagnosis::section;
 use crate::origin::origin;
+use crate::words::section;
 
 /// Failed records of a cell that are listed; the result for programs has all.
 const FAILURES_SHOWN: usize = 5;

@@ -5,8 +5,8 @@ use gyrocal_fleet::{FleetResult, prose};
 use gyrocal_statistics::format;
 use gyrocal_words::counted;
 
-use crate::diagnosis::section;
 use crate::origin::origin;
+use crate::words::section;
 
 /// Units of a coefficient that are shown as bars.
 const SHOWN: usize = 40;

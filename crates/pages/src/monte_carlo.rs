@@ -8,8 +8,8 @@ use gyrocal_evaluation::{
 };
 use gyrocal_statistics::format;
 
-use crate::diagnosis::section;
 use crate::origin::{file_name, origin};
+use crate::words::section;
 
 /// Failed runs that are listed; the result for programs has all.
 const FAILURES_SHOWN: usize = 20;

@@ -5,8 +5,8 @@ use gyrocal_document::{Bar, BarGroup, Bars, Item, Part, Tint};
 use gyrocal_statistics::format;
 use gyrocal_words::{counted, size};
 
-use crate::diagnosis::section;
 use crate::origin::{file_name, origin};
+use crate::words::section;
 
 /// The page of a plan.
 #[must_use]

@@ -8,8 +8,8 @@ use gyrocal_record::{Input, Manifest};
 use gyrocal_statistics::{NORMAL_97_5, format};
 
 use crate::bad_samples;
-use crate::diagnosis::section;
 use crate::origin::{file_name, named, origin};
+use crate::words::section;
 
 /// The page of gyro outputs in the rate domain. The last file of the manifest describes the logs before it;
 /// `clocks` is what there is to tell of their clocks.

@@ -11,8 +11,8 @@ use gyrocal_instruments::multi_position::{
 use gyrocal_record::Manifest;
 use gyrocal_statistics::format;
 
-use crate::diagnosis::section;
 use crate::origin::{file_name, origin};
+use crate::words::section;
 
 /// A multi-position test.
 #[derive(Clone, Copy, Debug)]

@@ -6,7 +6,7 @@ use gyrocal_diagnosis::{
 use gyrocal_document::{Item, Screen, Section, Standing, Table};
 use gyrocal_statistics::format;
 
-use crate::diagnosis::section;
+use crate::words::section;
 
 /// The first screen of uncertainty budgets.
 #[must_use]

@@ -1,5 +1,6 @@
 //! Words and numbers in sentences.
 
+use gyrocal_document::{Item, Section};
 use gyrocal_statistics::format;
 
 /// A specific force in µg.
@@ -13,5 +14,15 @@ pub(crate) fn listed(names: &[&str]) -> String {
         [] => String::new(),
         [one] => (*one).to_owned(),
         [head @ .., last] => format!("{} and {last}", head.join(", ")),
+    }
+}
+
+/// A section.
+pub(crate) fn section(id: &str, title: &str, lead: &str, items: Vec<Item>) -> Section {
+    Section {
+        id: id.to_owned(),
+        title: title.to_owned(),
+        lead: lead.to_owned(),
+        items,
     }
 }

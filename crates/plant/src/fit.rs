@@ -63,8 +63,11 @@ pub fn fit(
     first_rows: usize,
     at: &mut dyn FnMut(&'static str, f64),
 ) -> Result<Fit, PlantError> {
-    for one in [Some(&record), later.as_ref()].into_iter().flatten() {
-        refuse_without_readings(one, first_rows)?;
+    refuse_without_readings(&record, first_rows, false)?;
+    if let Some(later) = &later {
+        // Its first rows alone set its initial states, if its rates have no noise.
+        let begins = plant.description().noises.is_empty();
+        refuse_without_readings(later, first_rows, begins)?;
     }
     at("parameters", 0.0);
     let Determined {
@@ -111,8 +114,12 @@ pub fn fit(
     Ok(Fit { answer, fitted })
 }
 
-/// Refuses a record without a reading after the first rows, or in them.
-fn refuse_without_readings(named: &NamedRecord, first_rows: usize) -> Result<(), PlantError> {
+/// Refuses a record without a reading after the first rows, or in them if it `begins` with these.
+fn refuse_without_readings(
+    named: &NamedRecord,
+    first_rows: usize,
+    begins: bool,
+) -> Result<(), PlantError> {
     let record = &named.record;
     let outputs = record.outputs.len() / record.len().max(1);
     let first = outputs * first_rows.min(record.len());
@@ -126,13 +133,19 @@ fn refuse_without_readings(named: &NamedRecord, first_rows: usize) -> Result<(),
             advice: advice.to_owned(),
         })
     };
+    if has_none(&record.outputs) {
+        return refuse(
+            "it has no reading".to_owned(),
+            "give a record with readings",
+        );
+    }
     if has_none(after) {
         let problem = format!(
             "the first {first_rows} of its {rows} rows are not to count, and no reading is left"
         );
         return refuse(problem, "let fewer rows be free");
     }
-    if first_rows > 0 && has_none(before) {
+    if begins && first_rows > 0 && has_none(before) {
         let problem = format!("its first {first_rows} rows, which are to be free, have no reading");
         return refuse(problem, "let more rows be free, or none");
     }

@@ -108,6 +108,14 @@ pub fn simulate(
         .flat_map(|(row, here)| dynamics.outputs(row, &course, here))
         .collect();
     let [state_sigmas, output_sigmas] = sigmas(&lin, &known.covariance);
+    let mut sigmas = state_sigmas.iter().chain(&output_sigmas);
+    if outputs.iter().any(|value| !value.is_finite()) || sigmas.any(|sigma| !sigma.is_finite()) {
+        return Err(PlantError::Input {
+            origin: run.name,
+            problem: "its outputs, or their standard deviations, are no finite numbers".to_owned(),
+            advice: "give inputs that the plant bears".to_owned(),
+        });
+    }
     let state_names = description.states.iter().map(|one| (&one.id, &one.unit));
     let output_names = description.outputs.iter().map(|one| (&one.id, &one.unit));
     Ok(Simulation {
@@ -185,7 +193,9 @@ fn sigmas(lin: &Linearised, covariance: &DMatrix<f64>) -> [Vec<f64>; 2] {
     let deviations = |by: &DMatrix<f64>| -> Vec<f64> {
         let spread = by * covariance;
         let variances = (0..by.nrows()).map(|i| spread.row(i).dot(&by.row(i)));
-        variances.map(|variance| variance.max(0.0).sqrt()).collect()
+        // Rounding may make a variance of nothing negative; the comparison leaves NaN as it is.
+        let not_negative = variances.map(|variance| if variance < 0.0 { 0.0 } else { variance });
+        not_negative.map(f64::sqrt).collect()
     };
     let with_parameters = |by_states: DMatrix<f64>, own: &[f64], by: &DMatrix<f64>| {
         let mut moved = &by_states * by;

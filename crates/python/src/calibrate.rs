@@ -205,9 +205,9 @@ impl<'a> Sound<'a> {
                         ..Failure::default()
                     },
                 )?),
-                None => Blocks::of(&self.run(), None)
-                    .filter(|_| request.takes_blocks() && self.given.axes.is_none()),
-            };
+                None if request.takes_blocks() && self.given.axes.is_none() => Blocks::of(&self.run(), None),
+            None => None,
+        };
         Ok(match blocks {
             Some(blocks) => Self {
                 averaged: Some(blocks.report),

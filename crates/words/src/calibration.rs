@@ -6,8 +6,8 @@ mod verdict;
 
 use gyrocal_document::{List, Words};
 use gyrocal_record::{
-    AXES, AveragedReport, AzimuthReport, CalibrationMethod, CalibrationReport, NoiseDifference,
-    NoiseEstimate, NoiseRatio, RecordReport, RunReport, SiteReport, printable_line,
+    AXES, AzimuthReport, CalibrationMethod, CalibrationReport, NoiseDifference, NoiseEstimate,
+    NoiseRatio, RecordReport, RunReport, SiteReport, printable_line,
 };
 use gyrocal_statistics::format;
 
@@ -16,10 +16,7 @@ pub use verdict::calibration_verdict;
 
 use crate::diagnosis::is_correlation;
 use crate::files::joined;
-
-/// Share of the variance of a mean from which on the attitude random walk within it is told; a smaller one does not
-/// change the consistency test of a record of some days.
-const SIGNIFICANT_WALK_SHARE: f64 = 0.05;
+use crate::means::means;
 
 /// Records, verdict, what is determined, noise and site of a calibration, in reading order.
 #[must_use]
@@ -59,29 +56,6 @@ fn record_line(one: &RecordReport) -> String {
     );
     if let Some(averaged) = &one.averaged {
         text += &format!(", {}", means(averaged));
-    }
-    text
-}
-
-/// The means that are used in the place of the rows of a record.
-#[must_use]
-pub(crate) fn means(averaged: &AveragedReport) -> String {
-    let mut text = format!(
-        "averaged over {} s to {} means of {:.3} times the noise",
-        averaged.interval_s, averaged.means, averaged.noise_ratio
-    );
-    if averaged.left_out > 0 {
-        text += &format!(
-            "; {} values left out, means of fewer than half of the median number of values",
-            averaged.left_out
-        );
-    }
-    if averaged.walk_share > SIGNIFICANT_WALK_SHARE {
-        text += &format!(
-            ". Up to {:.0} % of the variance of these means is the attitude random walk within an \
-             interval, which the declared noise does not include: average over a shorter interval",
-            100.0 * averaged.walk_share
-        );
     }
     text
 }

@@ -13,6 +13,7 @@ mod calibration;
 mod diagnosis;
 mod files;
 mod format;
+mod means;
 pub mod plant;
 
 pub use calibration::{calibration, calibration_screen, calibration_verdict};

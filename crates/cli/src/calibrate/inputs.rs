@@ -116,7 +116,8 @@ fn take_means(
                 printable_path(&measurement.path)
             ))
         })?),
-        None => Blocks::of(&run, None).filter(|_| arguments.takes_blocks()),
+        None if arguments.takes_blocks() => Blocks::of(&run, None),
+        None => None,
     };
     if let Some(blocks) = blocks {
         measurement.averaged = Some(blocks.report);

@@ -15,7 +15,7 @@ fn a_fit_tells_estimates_and_a_simulation_takes_them() {
         ["plant.json", "record.csv", "later.csv", "columns.toml"].map(example);
     let fit = ["plant", "fit", &plant, &record, "--columns", &columns];
     let more = ["--later", &later, "--first-rows", "40", "--json", "f.json"];
-    let printed = folder.succeed(&[&fit[..], &more].concat());
+    let printed = folder.succeed([&fit[..], &more].concat());
     for words in ["AIC", "in open loop", "condition number", "later record"] {
         assert!(printed.contains(words), "{words}: {printed}");
     }
@@ -28,7 +28,7 @@ fn a_fit_tells_estimates_and_a_simulation_takes_them() {
 
     let simulate = ["plant", "simulate", &plant, &later, "--columns", &columns];
     let more = ["--fit", "f.json", "--output", "s.csv"];
-    folder.succeed(&[&simulate[..], &more].concat());
+    folder.succeed([&simulate[..], &more].concat());
     let table = folder.text("s.csv");
     let mut lines = table.lines();
     assert_eq!(lines.next(), Some("time_s,x,x_sigma,v,v_sigma,y,y_sigma"));
@@ -45,7 +45,7 @@ fn a_fit_tells_estimates_and_a_simulation_takes_them() {
 
     folder.put("none.json", "{}");
     let more = ["--fit", "none.json", "--output", "n.csv"];
-    let refused = folder.fail(&[&simulate[..], &more].concat());
+    let refused = folder.fail([&simulate[..], &more].concat());
     assert!(
         refused.contains("not the result of a fit of a plant"),
         "{refused}"
@@ -61,10 +61,10 @@ fn a_fit_tells_estimates_and_a_simulation_takes_them() {
         } else {
             &columns[..]
         };
-        let refused = folder.fail(&[&arguments[..], columns, &more].concat());
+        let refused = folder.fail([&arguments[..], columns, &more].concat());
         assert!(refused.contains(words), "{words}: {refused}");
     }
-    let itself = folder.run(&[&fit[..], &["--later", &record]].concat());
+    let itself = folder.run([&fit[..], &["--later", &record]].concat());
     assert_eq!(itself.status.code(), Some(2), "{itself:?}");
 }
 
@@ -82,7 +82,7 @@ fn a_comparison_is_one_table_and_refuses_another_plant() {
         "s = plant.parameter(\"s\", \"m^-2 s^-2\", -0.02)\nu = plant.input",
     );
     folder.put("rival.py", &rival);
-    folder.succeed(&["plant", "derive", "rival.py"]);
+    folder.succeed(["plant", "derive", "rival.py"]);
     let compare = ["plant", "compare", &plant, "rival.json"];
     let files = [
         record.as_str(),
@@ -93,7 +93,7 @@ fn a_comparison_is_one_table_and_refuses_another_plant() {
         "--json",
         "c.json",
     ];
-    let printed = folder.succeed(&[&compare[..], &files].concat());
+    let printed = folder.succeed([&compare[..], &files].concat());
     assert!(
         printed.starts_with("COMPARED  rival.json has the least BIC"),
         "{printed}"
@@ -118,6 +118,6 @@ fn a_comparison_is_one_table_and_refuses_another_plant() {
         .display()
         .to_string();
     let files = [record.as_str(), "--columns", &columns];
-    let refused = folder.fail(&[&["plant", "compare", &plant, &servo][..], &files].concat());
+    let refused = folder.fail([&["plant", "compare", &plant, &servo][..], &files].concat());
     assert!(refused.contains("it has the inputs"), "{refused}");
 }

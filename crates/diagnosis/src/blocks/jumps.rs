@@ -3,7 +3,7 @@
 use gyrocal_record::Record;
 
 /// A difference of means of rows of white noise exceeds this in one of some thousand records of a million rows; a block
-/// that is divided there loses nothing.
+/// that is divided there loses its smaller part.
 const JUMP_SIGMAS: f64 = 6.0;
 
 /// Length of the rows that are compared over that without a gap, beyond which they are not.
@@ -89,9 +89,10 @@ fn without_holes(values: &[f64]) -> Vec<f64> {
             whole[..row].fill(*value);
         }
         if let Some(last) = last {
-            for hole in last + 1..row {
-                let share = (hole - last) as f64 / (row - last) as f64;
-                whole[hole] = values[last] + share * (value - values[last]);
+            let holes = whole[last..row].iter_mut().enumerate().skip(1);
+            for (place, hole) in holes {
+                let share = place as f64 / (row - last) as f64;
+                *hole = values[last] + share * (value - values[last]);
             }
         }
         last = Some(row);

@@ -1,4 +1,6 @@
-//! Whether rows are white within blocks: what quadratics leave of them.
+//! Whether rows are white: what quadratics leave of them.
+
+use core::f64::consts::TAU;
 
 use gyrocal_record::Record;
 use gyrocal_statistics::{two_sided_p, z_of_two_sided_p};
@@ -8,10 +10,7 @@ use crate::noise::lattice;
 /// Probability that the rows of a sound record are not taken for white: it is then diagnosed row by row.
 const FALSE_REFUSAL: f64 = 1e-3;
 
-/// Most lags of the correlation within a block that are tested.
-const MOST_LAGS: usize = 12;
-
-/// Least share of the rows that whole blocks without gaps must hold.
+/// Least share of the rows that stretches without gaps and missing values must hold.
 const WHOLE: f64 = 0.5;
 
 /// Length of an interval over the median one, less one, up to which rows are taken as equally spaced.
@@ -23,55 +22,57 @@ const LEAST_STEP: f64 = 0.5;
 /// Coefficients of a quadratic.
 const TERMS: usize = 3;
 
-/// What quadratics through equally spaced rows leave of each block of an axis.
+/// Share of the power at a frequency that a quadratic must leave for it to be tested.
+const LEFT: f64 = 0.5;
+
+/// What quadratics leave of equally spaced rows, stretch after stretch.
 pub(super) struct Rows<'a> {
     record: &'a Record,
-    /// Rows of a block.
+    /// Rows of a stretch.
     rows: usize,
-    /// Residuals by axis, block after block.
+    /// Residuals by axis.
     left: [Vec<f64>; 3],
-    /// The matrix that takes the quadratic out of the rows of a block.
-    out: Vec<Vec<f64>>,
+    basis: [Vec<f64>; TERMS],
 }
 
 impl<'a> Rows<'a> {
-    /// Blocks of so many rows at an interval, none of which reaches over a jump. `None` if too few are whole.
+    /// Stretches of so many rows at an interval, none of which reaches over a jump. `None` if they hold too little.
     pub(super) fn new(
         record: &'a Record,
         (interval_s, rows): (f64, usize),
         jumps: &[usize],
     ) -> Option<Self> {
         let basis = quadratics(rows);
-        let mut this = Self {
-            record,
-            rows,
-            left: Default::default(),
-            out: without(&basis),
-        };
+        let mut left: [Vec<f64>; 3] = Default::default();
         let mut first = 0;
         while first + rows <= record.len() {
-            let block = first..first + rows;
+            let stretch = first..first + rows;
             let inside = jumps.partition_point(|row| *row <= first);
-            if let Some(jump) = jumps.get(inside).filter(|row| **row < block.end) {
+            if let Some(jump) = jumps.get(inside).filter(|row| **row < stretch.end) {
                 first = *jump;
                 continue;
             }
-            let off = record.time_s[block.clone()]
+            let off = record.time_s[stretch.clone()]
                 .windows(2)
                 .position(|pair| ((pair[1] - pair[0]) / interval_s - 1.0).abs() > SPACING);
             if let Some(off) = off {
                 first += off + 1;
                 continue;
             }
-            for (axis, left) in this.left.iter_mut().enumerate() {
-                let values = record.accel_g[block.clone()].iter().map(|row| row[axis]);
+            for (axis, left) in left.iter_mut().enumerate() {
+                let values = record.accel_g[stretch.clone()].iter().map(|row| row[axis]);
                 leave(values, &basis, left);
             }
             first += rows;
         }
         let enough = WHOLE * record.len() as f64;
         let is_enough = |left: &Vec<f64>| left.len() as f64 >= enough;
-        this.left.iter().all(is_enough).then_some(this)
+        left.iter().all(is_enough).then_some(Self {
+            record,
+            rows,
+            left,
+            basis,
+        })
     }
 
     /// Standard deviation of a value of each axis, g.
@@ -85,9 +86,8 @@ impl<'a> Rows<'a> {
 
     /// Whether the rows are those of white, steady, normal and continuous noise.
     pub(super) fn are_white(&self) -> bool {
-        // Largest value, steadiness, quantisation, and each lag, of each axis.
-        let lags = MOST_LAGS.min(self.rows / 2);
-        let each = FALSE_REFUSAL / (3 * (2 + lags)) as f64;
+        // Largest value, steadiness and each frequency of each axis.
+        let each = FALSE_REFUSAL / (3 * (2 + self.rows / 2)) as f64;
         let most = z_of_two_sided_p(each);
         let noise_g = self.noise_g();
         let is_continuous = |axis: usize| {
@@ -99,15 +99,16 @@ impl<'a> Rows<'a> {
             noise_g > 0.0
                 && self.largest_p(left, noise_g) > each
                 && self.steadiness(left, noise_g).abs() < most
-                && (1..=lags).all(|lag| self.correlation(left, noise_g, lag).abs() < most)
+                && (1..=self.rows / 2).all(|wave| self.power(left, noise_g, wave).abs() < most)
                 && is_continuous(axis)
         })
     }
 
     /// Probability of a residual as large as the largest among so many.
     fn largest_p(&self, left: &[f64], noise_g: f64) -> f64 {
+        let taken = |row: usize| -> f64 { self.basis.iter().map(|own| own[row].powi(2)).sum() };
         let spread: Vec<f64> = (0..self.rows)
-            .map(|row| self.out[row][row].sqrt())
+            .map(|row| (1.0 - taken(row)).sqrt())
             .collect();
         let scaled = left.iter().zip(spread.iter().cycle());
         let largest = scaled.fold(0.0_f64, |most, (value, spread)| {
@@ -116,42 +117,45 @@ impl<'a> Rows<'a> {
         two_sided_p(largest) * left.len() as f64
     }
 
-    /// How much more than by chance the variance changes from block to block, in standard deviations.
+    /// How much more than by chance the variance changes from stretch to stretch, in standard deviations.
     fn steadiness(&self, left: &[f64], noise_g: f64) -> f64 {
         let freedom = (self.rows - TERMS) as f64;
-        let blocks = left.chunks_exact(self.rows);
-        let count = blocks.len() as f64;
-        let squares = blocks.map(|block| {
-            let square: f64 = block.iter().map(|value| value * value).sum();
+        let stretches = left.chunks_exact(self.rows);
+        let count = stretches.len() as f64;
+        let squares = stretches.map(|stretch| {
+            let square: f64 = stretch.iter().map(|value| value * value).sum();
             (square / (noise_g * noise_g) - freedom).powi(2) / (2.0 * freedom)
         });
         // Fourth moment of chi-square about its mean: 12 ν² + 48 ν.
         (squares.sum::<f64>() / count - 1.0) / ((2.0 + 12.0 / freedom) / count).sqrt()
     }
 
-    /// Sum of products of values `lag` rows apart less its expectation in white noise, in standard deviations.
-    fn correlation(&self, left: &[f64], noise_g: f64, lag: usize) -> f64 {
-        let blocks = left.chunks_exact(self.rows);
-        let count = blocks.len() as f64;
-        let products = |block: &[f64]| -> f64 {
-            let pairs = block.iter().zip(&block[lag..]);
-            pairs.map(|(a, b)| a * b).sum()
+    /// Mean power of so many waves in a stretch less that of white noise, in standard deviations; zero where the
+    /// quadratic takes most of it.
+    fn power(&self, left: &[f64], noise_g: f64, waves: usize) -> f64 {
+        let (rows, is_last) = (self.rows, 2 * waves == self.rows);
+        let angle = |row: usize| TAU * ((waves * row) % rows) as f64 / rows as f64;
+        let turns: Vec<(f64, f64)> = (0..rows).map(|row| angle(row).sin_cos()).collect();
+        let along = |values: &[f64]| {
+            let parts = values.iter().zip(&turns);
+            parts.fold((0.0, 0.0), |(s, c), (value, (sin, cos))| {
+                (s + value * sin, c + value * cos)
+            })
         };
-        let sum: f64 = blocks.map(products).sum::<f64>() / (noise_g * noise_g);
-        let expected: f64 = (lag..self.rows).map(|row| self.out[row - lag][row]).sum();
-        // Of eᵀ A e with e = M w of white w: 2 tr(A M A M), A the symmetric matrix of the lag.
-        let shifted = |row: usize, column: usize| {
-            let before = row
-                .checked_sub(lag)
-                .map_or(0.0, |row| self.out[row][column]);
-            let after = self.out.get(row + lag).map_or(0.0, |row| row[column]);
-            0.5 * (before + after)
+        let square = |values: &[f64]| {
+            let (sine, cosine) = along(values);
+            sine * sine + cosine * cosine
         };
-        let places = (0..self.rows).flat_map(|row| (0..self.rows).map(move |column| (row, column)));
-        let trace: f64 = places
-            .map(|(row, column)| shifted(row, column) * shifted(column, row))
-            .sum();
-        (sum - count * expected) / (2.0 * trace * count).sqrt()
+        let expected = rows as f64 - self.basis.iter().map(|own| square(own)).sum::<f64>();
+        if expected < LEFT * rows as f64 {
+            return 0.0;
+        }
+        let stretches = left.chunks_exact(rows);
+        let count = stretches.len() as f64;
+        let mean = stretches.map(square).sum::<f64>() / (noise_g * noise_g * count);
+        // The power is exponential; that of the highest frequency, without a sine, is the square of one normal value.
+        let spread = if is_last { 2.0_f64.sqrt() } else { 1.0 };
+        (mean / expected - 1.0) / (spread / count.sqrt())
     }
 }
 
@@ -175,17 +179,6 @@ fn quadratics(rows: usize) -> [Vec<f64>; TERMS] {
         own.iter_mut().for_each(|value| *value /= length);
     }
     basis
-}
-
-/// One less the projection on a basis.
-fn without(basis: &[Vec<f64>; TERMS]) -> Vec<Vec<f64>> {
-    let rows = basis[0].len();
-    let entry = |row: usize, column: usize| {
-        let along: f64 = basis.iter().map(|own| own[row] * own[column]).sum();
-        f64::from(u8::from(row == column)) - along
-    };
-    let of_row = |row| (0..rows).map(|column| entry(row, column)).collect();
-    (0..rows).map(of_row).collect()
 }
 
 /// Adds what a basis leaves of some values; nothing if one is missing.

@@ -18,7 +18,7 @@ use crate::power::{needs_caveat, undetectable};
 use crate::untested::{Tests, not_tested, untested};
 use crate::validation::CrossValidated;
 use gyrocal_answer::{
-    AllanCourse, AllanPoint, AllanTest, Answer, Estimated, FalseAlarmShares, Finding, Gain,
+    AllanCourse, AllanPoint, AllanTest, Answer, Estimated, FalseAlarmShares, Finding, Gain, Gaps,
     MagnitudeTest, ModelNoise, NoiseAuditSummary, NoiseLevel, NotTested, NotTestedReason, Power,
     RankedEffect, RecordSummary, ResidualTest, Residuals, SCHEMA_VERSION, SetUps, SizesByRecord,
     Subject,
@@ -184,6 +184,34 @@ pub fn record_summary(record: &Record) -> RecordSummary {
         duration_s: record.duration_s(),
         gaps: gaps(record),
         averaged: None,
+    }
+}
+
+/// Size of several records together.
+#[must_use]
+pub fn records_summary<'a>(records: impl IntoIterator<Item = &'a RecordSummary>) -> RecordSummary {
+    let mut all = RecordSummary {
+        rows: 0,
+        duration_s: 0.0,
+        gaps: Gaps::default(),
+        averaged: None,
+    };
+    for own in records {
+        all.gaps = both(&all.gaps, all.rows as f64, &own.gaps, own.rows as f64);
+        all.rows += own.rows;
+        all.duration_s += own.duration_s;
+    }
+    all
+}
+
+/// Gaps of two records, with as many rows.
+pub(super) fn both(one: &Gaps, rows: f64, other: &Gaps, other_rows: f64) -> Gaps {
+    let missing = rows * one.missing_values + other_rows * other.missing_values;
+    Gaps {
+        count: one.count + other.count,
+        missing_s: one.missing_s + other.missing_s,
+        longest_s: one.longest_s.max(other.longest_s),
+        missing_values: missing / (rows + other_rows),
     }
 }
 

@@ -7,6 +7,7 @@ use gyrocal_setup::PlatformKind;
 use super::answer::record_summary;
 use super::noise_audited_fit::noise_audited_fit;
 use super::{DiagnoseOptions, Diagnosis};
+use crate::blocks::Blocks;
 use crate::error::DiagnosisError;
 use crate::error_budget::shares;
 use crate::gate::Gate;
@@ -46,9 +47,13 @@ impl Diagnosis<'_> {
         let axes = later.usable_axes()?;
         let (usable, setup) = later.sound(options)?;
         self.result.setup.extend(setup.into_iter().map(of_later));
+        let (usable, later_bench, averaged) = Blocks::or_rows(usable, later_bench, axes.as_ref());
+        if let Some(later) = &mut self.result.later_record {
+            later.averaged = averaged;
+        }
         let later = &Run {
             record: &usable,
-            bench: later_bench,
+            bench: &later_bench,
         };
         let (record, bench) = (self.record.clone(), self.bench.clone());
         let first = &Run {

@@ -8,7 +8,7 @@ use gyrocal_calibration::{
 };
 use gyrocal_record::{Bench, Record, SetupProblem};
 
-use super::answer::record_summary;
+use super::answer::{both, record_summary, records_summary};
 use super::noise_audited_fit::{AuditedFit, noise_audited_fit};
 use super::one_platform::OnePlatform;
 use super::{DiagnoseOptions, Diagnosis, Sound, concluded, diagnose_rows};
@@ -21,7 +21,7 @@ use crate::noise::{AuditOptions, NoiseAudit, NoiseFinding};
 use crate::request;
 use crate::series::Innovations;
 use crate::stage::Stage;
-use gyrocal_answer::{Estimated, FalseAlarmShares, Gaps, RecordResult, RecordSummary};
+use gyrocal_answer::{Estimated, FalseAlarmShares, RecordResult, RecordSummary};
 
 /// One of several records, with its set-up checked.
 pub struct RecordToDiagnose<'a> {
@@ -125,19 +125,23 @@ fn sound_records<'a>(
         let axes = axes.map_err(|error| of(&name, error.into()))?;
         let (record, setup) = gate.sound(options).map_err(|error| of(&name, error))?;
         request::check(&options.also, &record, bench).map_err(|error| of(&name, error))?;
-        let summary = record_summary(&record);
-        let (record, bench, averaged) = Blocks::or_rows(record, bench, axes.as_ref());
         sound.push(SoundRecord {
+            summary: record_summary(&record),
+            bench: Cow::Borrowed(bench),
             name,
             record,
-            bench,
-            summary: RecordSummary {
-                averaged,
-                ..summary
-            },
             axes,
             setup,
         });
+    }
+    let runs = sound.iter().map(|one| {
+        let (record, bench): (&Record, &Bench) = (&one.record, &one.bench);
+        (Run { record, bench }, one.axes.as_ref())
+    });
+    let blocks = Blocks::of_all(&runs.collect::<Vec<_>>());
+    for (one, means) in sound.iter_mut().zip(blocks.into_iter().flatten()) {
+        one.summary.averaged = Some(means.report);
+        (one.record, one.bench) = (Cow::Owned(means.record), Cow::Owned(means.bench));
     }
     Ok(sound)
 }
@@ -368,32 +372,4 @@ fn append(all: &mut Innovations, one: Innovations) {
     all.normalised.extend(one.normalised);
     all.weighted_per_g.extend(one.weighted_per_g);
     all.specific_force_g.extend(one.specific_force_g);
-}
-
-/// Size of several records together.
-#[must_use]
-pub fn records_summary<'a>(records: impl IntoIterator<Item = &'a RecordSummary>) -> RecordSummary {
-    let mut all = RecordSummary {
-        rows: 0,
-        duration_s: 0.0,
-        gaps: Gaps::default(),
-        averaged: None,
-    };
-    for own in records {
-        all.gaps = both(&all.gaps, all.rows as f64, &own.gaps, own.rows as f64);
-        all.rows += own.rows;
-        all.duration_s += own.duration_s;
-    }
-    all
-}
-
-/// Gaps of two records, with as many rows.
-fn both(one: &Gaps, rows: f64, other: &Gaps, other_rows: f64) -> Gaps {
-    let missing = rows * one.missing_values + other_rows * other.missing_values;
-    Gaps {
-        count: one.count + other.count,
-        missing_s: one.missing_s + other.missing_s,
-        longest_s: one.longest_s.max(other.longest_s),
-        missing_values: missing / (rows + other_rows),
-    }
 }

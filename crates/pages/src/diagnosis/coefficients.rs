@@ -8,10 +8,11 @@ use gyrocal_document::{
 };
 use gyrocal_record::Record;
 
-use super::{accepted, section as titled};
+use super::accepted;
 use crate::error::PageError;
 use crate::panels::{EXTENDED, NOMINAL, line, two_sigmas};
 use crate::words::listed;
+use crate::words::section as titled;
 
 /// A change of a coefficient from which on it is marked, in claimed sigmas.
 const NOTABLE: f64 = 2.0;

@@ -5,8 +5,8 @@ use gyrocal_document::{Chart, Item, Level, Line, LineKind, Panel, Section, Tint}
 use gyrocal_record::{AXES, Record};
 use gyrocal_statistics::{BinMean, BinnedMeans, binned_means};
 
-use super::section;
 use crate::panels::two_sigmas;
+use crate::words::section;
 
 /// Bins of a covariate.
 const BINS: usize = 24;

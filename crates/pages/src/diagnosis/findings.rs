@@ -4,7 +4,7 @@ use gyrocal_answer::{AlternativeKind, Answer};
 use gyrocal_document::{Item, List, Section, Table};
 use gyrocal_statistics::format::percent;
 
-use super::section;
+use crate::words::section;
 
 /// `None` without findings.
 pub(super) fn findings(result: &Answer) -> Option<Section> {

@@ -4,8 +4,8 @@ use gyrocal_answer::{Answer, Gain, Prediction};
 use gyrocal_diagnosis::LaterPrediction;
 use gyrocal_document::{Chart, Item, Level, Line, LineKind, Panel, Section, Table, TimeAxis, Tint};
 
-use super::section as titled;
 use crate::panels::{EXTENDED, NOMINAL, line};
+use crate::words::section as titled;
 use crate::words::{listed, micro_g};
 
 /// `None` without a cause and a later record.

@@ -7,9 +7,9 @@ use gyrocal_document::{Item, List, Section, Table};
 use gyrocal_statistics::format;
 use gyrocal_words::counted;
 
-use super::section;
 use crate::unlisted::unlisted;
 use crate::words::listed;
+use crate::words::section;
 
 pub(super) fn cannot_tell(result: &Answer) -> Section {
     let groups = gyrocal_words::groups(result).into_iter();

@@ -92,13 +92,3 @@ fn accepted(result: &Answer) -> Vec<&str> {
     let accepted = causes.filter(|cause| cause.accepted == Some(true));
     accepted.map(|cause| &*cause.effect).collect()
 }
-
-/// A section.
-pub(crate) fn section(id: &str, title: &str, lead: &str, items: Vec<Item>) -> Section {
-    Section {
-        id: id.to_owned(),
-        title: title.to_owned(),
-        lead: lead.to_owned(),
-        items,
-    }
-}

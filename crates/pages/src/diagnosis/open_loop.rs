@@ -7,9 +7,10 @@ use gyrocal_record::{AXES, Bench, Record};
 use gyrocal_statistics::NORMAL_97_5;
 use gyrocal_words::counted;
 
-use super::{covariates, section};
+use super::covariates;
 use crate::error::PageError;
 use crate::panels;
+use crate::words::section;
 use crate::words::{listed, micro_g};
 
 /// The fits of a record whose simulations are shown.

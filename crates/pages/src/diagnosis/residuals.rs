@@ -6,8 +6,9 @@ use gyrocal_document::{Chart, Item, Level, Mark, Panel, Section, Tint};
 use gyrocal_record::AXES;
 use gyrocal_statistics::format;
 
-use super::{section as titled, test_table};
+use super::test_table;
 use crate::panels::{self, line};
+use crate::words::section as titled;
 
 /// Lags of the autocorrelation.
 const LAGS: usize = 40;

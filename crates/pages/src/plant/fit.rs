@@ -7,8 +7,8 @@ use gyrocal_statistics::format;
 use gyrocal_words::plant::{comparison_screen, direction, fit_screen, simulation_error};
 
 use super::{over_time, rms, tables};
-use crate::diagnosis::section;
 use crate::origin::{file_name, origin};
+use crate::words::section;
 
 /// The page of a fit.
 #[must_use]

@@ -3,8 +3,8 @@
 use gyrocal_answer::Answer;
 use gyrocal_document::{Item, List, Section, Table};
 
-use crate::diagnosis::section;
 use crate::unlisted::unlisted;
+use crate::words::section;
 
 pub(super) fn cannot_tell(answer: &Answer) -> Section {
     let directions = |is_gauge: bool| {

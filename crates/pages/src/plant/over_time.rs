@@ -7,9 +7,9 @@ use gyrocal_statistics::format::{self, p_cell};
 use gyrocal_statistics::{NORMAL_97_5, rms_of_present};
 
 use super::{record_names, rms, with_unit};
-use crate::diagnosis::section;
 use crate::error::PageError;
 use crate::panels;
+use crate::words::section;
 
 /// Lags of the correlation of the innovations.
 const LAGS: usize = 40;

@@ -6,8 +6,8 @@ use gyrocal_plant::Diagnosed;
 use gyrocal_statistics::format;
 
 use super::{over_time, rms};
-use crate::diagnosis::section;
 use crate::panels;
+use crate::words::section;
 
 /// Each finding with its set; `None` if nothing was found.
 pub(super) fn sets(answer: &Answer) -> Option<Section> {

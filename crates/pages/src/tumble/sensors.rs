@@ -6,7 +6,7 @@ use gyrocal_statistics::format;
 
 use super::TumbleAnswer;
 use crate::bad_samples;
-use crate::diagnosis::section;
+use crate::words::section;
 
 /// Stops, accelerometers and gyros.
 pub(super) fn section_of(answer: &TumbleAnswer<'_>) -> Section {

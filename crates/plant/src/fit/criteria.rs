@@ -41,7 +41,7 @@ pub(super) fn correlations(all: &Coefficients, held: &[usize]) -> (Vec<Correlati
         .collect();
     pairs.sort_by(|a, b| b.coefficient.abs().total_cmp(&a.coefficient.abs()));
     pairs.truncate(LARGEST);
-    if free.is_empty() {
+    if free.is_empty() || correlation.iter().any(|value| !value.is_finite()) {
         return (pairs, None);
     }
     let eigenvalues = SymmetricEigen::new(correlation).eigenvalues;

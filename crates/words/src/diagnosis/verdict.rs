@@ -2,9 +2,9 @@
 
 use gyrocal_record::printable_line;
 
-use crate::calibration::means;
 use crate::files::{few, joined};
 use crate::format::{counted, size};
+use crate::means::means;
 use gyrocal_answer::{Answer, SetupProblem};
 use gyrocal_document::{List, Words};
 
