@@ -85,15 +85,13 @@ impl<'a> Known<'a> {
             summaries.push(record_summary(&record));
             sound.push((record, Cow::Borrowed(bench)));
         }
-        let runs = sound.iter().enumerate().map(|(place, (record, bench))| {
-            let (record, bench): (&Record, &Bench) = (record, bench);
-            (Run { record, bench }, axes.get(place))
-        });
-        let blocks = Blocks::of_all(&runs.collect::<Vec<_>>());
-        let all = sound.iter_mut().zip(&mut summaries);
-        for ((own, summary), means) in all.zip(blocks.into_iter().flatten()) {
-            summary.averaged = Some(means.report);
-            *own = (Cow::Owned(means.record), Cow::Owned(means.bench));
+        // Records that are searched together are not averaged.
+        if let ([(record, bench)], [summary]) = (&mut sound[..], &mut summaries[..]) {
+            let run = Run { record, bench };
+            if let Some(means) = Blocks::of(&run, axes.first()) {
+                summary.averaged = Some(means.report);
+                (*record, *bench) = (Cow::Owned(means.record), Cow::Owned(means.bench));
+            }
         }
         let runs = sound.iter();
         let runs: Vec<Run<'_>> = runs.map(|(record, bench)| Run { record, bench }).collect();

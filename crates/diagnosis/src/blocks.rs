@@ -38,9 +38,6 @@ const MOST_ROWS: f64 = 60.0;
 const TESTED: usize = 4;
 const FEWEST_TESTED: usize = 24;
 
-/// Largest over least noise of a row over that of its record, of records that are searched together.
-const ALIKE: f64 = 1.1;
-
 /// Rows of a block over the root of the variances of a value and of the walk from row to row.
 const SHARE_OF_ROOT: f64 = 0.25;
 
@@ -77,6 +74,8 @@ pub struct Blocks {
     pub bench: Bench,
     /// The blocks, as results tell them.
     pub report: AveragedReport,
+    /// Noise of a row over the declared one, as the rows show it.
+    pub(crate) accel_ratio: [f64; 3],
 }
 
 impl Blocks {
@@ -94,23 +93,13 @@ impl Blocks {
                 noise_ratio: found.report.noise_ratio * next.report.noise_ratio,
                 ..next.report
             };
-            found = Self { report, ..next };
+            found = Self {
+                report,
+                accel_ratio: found.accel_ratio,
+                ..next
+            };
         }
         Some(found)
-    }
-
-    /// Blocks of records that are searched together: a row of each must tell as much, as one of the others does.
-    /// `None` if one of them has no blocks, or blocks of other noise.
-    #[must_use]
-    pub fn of_all(runs: &[(Run<'_>, Option<&GyroAxes>)]) -> Option<Vec<Self>> {
-        let all = runs.iter().map(|(run, axes)| Self::of(run, *axes));
-        let all: Vec<Self> = all.collect::<Option<_>>()?;
-        let ratios = || all.iter().map(|one| one.report.noise_ratio);
-        let [least, most] = [
-            ratios().fold(f64::INFINITY, f64::min),
-            ratios().fold(0.0, f64::max),
-        ];
-        (most <= ALIKE * least).then_some(all)
     }
 
     fn once(run: &Run<'_>) -> Option<Self> {
@@ -140,7 +129,10 @@ impl Blocks {
         }
         let block_s = rows as f64 * interval_s;
         let means = average_between(record, block_s, &jumps).ok()?;
-        Some(Self::new(bench, means, block_s))
+        Some(Self {
+            accel_ratio: noise_g.map(|noise_g| noise_g / bench.accel_noise_g),
+            ..Self::new(bench, means, block_s)
+        })
     }
 
     /// Blocks of this length, whatever they lose.
@@ -158,6 +150,7 @@ impl Blocks {
             report: means.report(&bench, interval_s),
             bench,
             record: means.record,
+            accel_ratio: [1.0; 3],
         }
     }
 

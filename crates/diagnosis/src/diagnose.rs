@@ -7,6 +7,7 @@ mod given;
 mod gyro_noise;
 mod later;
 mod noise_audited_fit;
+mod of_blocks;
 mod of_calibration;
 mod one_platform;
 mod options;
@@ -23,7 +24,6 @@ use gyrocal_record::{Bench, Record, SetupProblem};
 use gyrocal_setup::PlatformKind;
 use gyrocal_statistics::allan_test;
 
-use crate::blocks::Blocks;
 use crate::error::DiagnosisError;
 use crate::error_budget::shares;
 use crate::filter_test::filter_test;
@@ -41,9 +41,10 @@ use answer::Evidence;
 pub use answer::{manifest, record_summary, records_summary};
 pub use given::fit_effects;
 use gyro_noise::{gyro_noise_findings, over_declared};
-use gyrocal_answer::{Answer, FalseAlarmShares, Gain, RecordSummary};
+use gyrocal_answer::{Answer, FalseAlarmShares, Gain};
 pub use later::predict_later;
 use noise_audited_fit::{AuditedFit, noise_audited_fit};
+use of_blocks::diagnose_sound;
 pub(crate) use of_calibration::diagnose_calibrated;
 pub use options::DiagnoseOptions;
 use options::{search_options, selection};
@@ -167,36 +168,8 @@ struct Sound<'e, 'a> {
     shares: FalseAlarmShares,
 }
 
-/// Diagnoses a record without gross errors; `setup` are those that it had, `axes` those of the instruments
-/// of a strapdown unit. Rows that come faster than anything moves are diagnosed as means of blocks, unless a filter is
-/// tested, which reads rows.
-fn diagnose_sound<'a>(
-    record: &'a Record,
-    bench: &'a Bench,
-    axes: Option<&GyroAxes>,
-    options: &DiagnoseOptions,
-    setup: Vec<SetupProblem>,
-    watch: &mut dyn FnMut(Stage),
-) -> Result<Diagnosis<'a>, DiagnosisError> {
-    let run = Run { record, bench };
-    let reads_rows = options.filter.is_some();
-    let blocks = (!reads_rows).then(|| Blocks::of(&run, axes)).flatten();
-    if let Some(blocks) = blocks {
-        let Run {
-            record: means,
-            bench,
-        } = blocks.run();
-        let mut found = diagnose_rows(means, bench, None, options, setup, watch)?;
-        found.result.record = RecordSummary {
-            averaged: Some(blocks.report),
-            ..record_summary(record)
-        };
-        return Ok(found.into_owned());
-    }
-    diagnose_rows(record, bench, axes, options, setup, watch)
-}
-
-/// The same of the rows as they are.
+/// Diagnoses the rows of a record without gross errors as they are; `setup` are those that it had, `axes` those of the
+/// instruments of a strapdown unit.
 fn diagnose_rows<'a>(
     record: &'a Record,
     bench: &'a Bench,

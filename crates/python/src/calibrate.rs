@@ -205,9 +205,11 @@ impl<'a> Sound<'a> {
                         ..Failure::default()
                     },
                 )?),
-                None if request.takes_blocks() && self.given.axes.is_none() => Blocks::of(&self.run(), None),
-            None => None,
-        };
+                None if request.takes_blocks() && self.given.axes.is_none() => {
+                    Blocks::of(&self.run(), None)
+                }
+                None => None,
+            };
         Ok(match blocks {
             Some(blocks) => Self {
                 averaged: Some(blocks.report),

@@ -12,7 +12,6 @@ use super::answer::{both, record_summary, records_summary};
 use super::noise_audited_fit::{AuditedFit, noise_audited_fit};
 use super::one_platform::OnePlatform;
 use super::{DiagnoseOptions, Diagnosis, Sound, concluded, diagnose_rows};
-use crate::blocks::Blocks;
 use crate::error::DiagnosisError;
 use crate::error_budget::shares;
 use crate::gate::Gate;
@@ -21,7 +20,7 @@ use crate::noise::{AuditOptions, NoiseAudit, NoiseFinding};
 use crate::request;
 use crate::series::Innovations;
 use crate::stage::Stage;
-use gyrocal_answer::{Estimated, FalseAlarmShares, RecordResult, RecordSummary};
+use gyrocal_answer::{Estimated, FalseAlarmShares, RecordResult};
 
 /// One of several records, with its set-up checked.
 pub struct RecordToDiagnose<'a> {
@@ -45,9 +44,7 @@ pub struct RecordsDiagnosis {
 struct SoundRecord<'a> {
     name: String,
     record: Cow<'a, Record>,
-    bench: Cow<'a, Bench>,
-    /// Its size as it was given.
-    summary: RecordSummary,
+    bench: &'a Bench,
     axes: Option<GyroAxes>,
     setup: Vec<SetupProblem>,
 }
@@ -70,11 +67,9 @@ pub fn diagnose_records(
     for one in &sound {
         let setup = one.setup.clone();
         let axes = one.axes.as_ref();
-        let own = diagnose_rows(&one.record, &one.bench, axes, options, setup, watch)
+        let own = diagnose_rows(&one.record, one.bench, axes, options, setup, watch)
             .map_err(|error| of(&one.name, error))?;
-        let mut own = own.into_owned();
-        own.result.record = one.summary;
-        alone.push(own);
+        alone.push(own.into_owned());
     }
     let mut together = jointly(&sound, options, watch)?;
     let turn_ons = together
@@ -88,7 +83,7 @@ pub fn diagnose_records(
         .enumerate()
         .map(|(index, (one, alone))| RecordResult {
             name: one.name.clone(),
-            record: one.summary,
+            record: record_summary(&one.record),
             turn_on_deg_per_h: turn_ons
                 .get(index)
                 .map(|axes| axes.map(|[estimate, sigma]| Estimated { estimate, sigma })),
@@ -126,22 +121,12 @@ fn sound_records<'a>(
         let (record, setup) = gate.sound(options).map_err(|error| of(&name, error))?;
         request::check(&options.also, &record, bench).map_err(|error| of(&name, error))?;
         sound.push(SoundRecord {
-            summary: record_summary(&record),
-            bench: Cow::Borrowed(bench),
+            bench,
             name,
             record,
             axes,
             setup,
         });
-    }
-    let runs = sound.iter().map(|one| {
-        let (record, bench): (&Record, &Bench) = (&one.record, &one.bench);
-        (Run { record, bench }, one.axes.as_ref())
-    });
-    let blocks = Blocks::of_all(&runs.collect::<Vec<_>>());
-    for (one, means) in sound.iter_mut().zip(blocks.into_iter().flatten()) {
-        one.summary.averaged = Some(means.report);
-        (one.record, one.bench) = (Cow::Owned(means.record), Cow::Owned(means.bench));
     }
     Ok(sound)
 }
@@ -179,7 +164,7 @@ fn audited<'a>(
     for one in sound {
         let run = Run {
             record: &one.record,
-            bench: &one.bench,
+            bench: one.bench,
         };
         let (axes, declared) = (one.axes.as_ref(), NoiseModel::default());
         let audited = noise_audited_fit(&run, axes, &declared, &of_audit, &options.calibration)
@@ -189,7 +174,7 @@ fn audited<'a>(
             .accel_ratio
             .map(|ratio| ratio * one.bench.accel_noise_g);
         let cleaned = audited.audit.cleaned.apply(&one.record);
-        let tested = magnitude_test(&cleaned, &one.bench, &noise_g, of_magnitude).ok();
+        let tested = magnitude_test(&cleaned, one.bench, &noise_g, of_magnitude).ok();
         magnitudes.extend(tested.map(|tested| (one.name.as_str(), tested)));
         audits.push(audited);
     }
@@ -241,7 +226,7 @@ fn searched_together(
 ) -> Result<Diagnosis<'static>, DiagnosisError> {
     let Audited { audits, .. } = audited;
     let start = work();
-    let benches: Vec<&Bench> = sound.iter().map(|one| &*one.bench).collect();
+    let benches: Vec<&Bench> = sound.iter().map(|one| one.bench).collect();
     let fits: Vec<FittedPlatform<'_>> = audits.iter().map(|one| one.nominal.clone()).collect();
     let nominal = FittedPlatform::joined(&fits, &benches)?;
     let records: Vec<&Record> = sound.iter().map(|one| &*one.record).collect();
@@ -252,7 +237,7 @@ fn searched_together(
     let joined = Sound {
         run: Run {
             record: &record,
-            bench: &first.bench,
+            bench: first.bench,
         },
         setup: sound
             .iter()
@@ -266,7 +251,7 @@ fn searched_together(
     let mut found = concluded(joined, options, watch)?.into_owned();
     // The next run follows the last record.
     let last = sound.last().unwrap_or(first);
-    found.bench = Cow::Owned(last.bench.clone().into_owned());
+    found.bench = Cow::Owned(last.bench.clone());
     Ok(found)
 }
 

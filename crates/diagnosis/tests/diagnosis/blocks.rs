@@ -131,6 +131,22 @@ fn no_block_reaches_over_a_jump_and_it_is_found_alone() {
 }
 
 #[test]
+fn a_drift_that_changes_by_degrees_an_hour_has_no_outliers() {
+    // Within the block of its onset the attitude has a kink of some standard deviations of a mean.
+    let parameters = [("size", 2.0), ("onset_s", 37_006.0)];
+    let step = Hidden::new("gyro_z.step", &parameters).unwrap();
+    let Simulation { record, bench, .. } = fast(13, 12.0, vec![step]);
+    let found = diagnose(&record, &bench, &DiagnoseOptions::default()).unwrap();
+    let names: Vec<&str> = found
+        .result
+        .findings
+        .iter()
+        .map(|one| one.effect.as_str())
+        .collect();
+    assert_eq!(names, ["gyro_z.step"]);
+}
+
+#[test]
 fn correlated_noise_stays_as_it_is() {
     let Simulation { record, bench, .. } = fast(6, 24.0, Vec::new());
     // Differences of noise of two records: a moving average of two rows.
