@@ -63,7 +63,7 @@ pub struct Diagnosis<'a> {
     /// The answer.
     pub result: Answer,
     /// The record that was diagnosed: without what gross errors of the set-up spoilt, and as means of
-    /// [`Blocks`] where its rows come faster than anything moves.
+    /// [`Blocks`](crate::Blocks) where its rows come faster than anything moves.
     pub record: Cow<'a, Record>,
     /// Its bench description, with the noise of one of these rows; of several records that of the last.
     pub bench: Cow<'a, Bench>,
