@@ -31,9 +31,12 @@ use inputs::Measurement;
 /// Estimate the nine drift coefficients from one record or several.
 ///
 /// Prints each coefficient with its standard deviation, the consistency test of the innovations, what the
-/// diagnosis of each record names (of more than 10 000 rows, that of their means), unobservable
+/// diagnosis of each record names (of more than 10 000 rows that are not white, that of their means), unobservable
 /// combinations of coefficients, the estimated noise, and the sensitivity to errors of latitude,
 /// Earth rate and gravity.
+///
+/// White rows that come faster than anything moves are read as means of blocks, which loses a thousandth of their
+/// information at most; the record line tells it.
 ///
 /// Several records are several turn-ons of one platform, each with its own initial attitude and
 /// clock.
@@ -49,8 +52,7 @@ pub(crate) struct CalibrateArguments {
     coefficients: Option<PathBuf>,
     #[command(flatten)]
     views: Views,
-    /// Average fast records over intervals of this length, 600 s at most: quicker, and without loss
-    /// of information while the noise is white.
+    /// Average over intervals of this length, 600 s at most, also rows whose noise is not white.
     #[arg(long, value_name = "SECONDS", value_parser = positive, conflicts_with = "gyro_axes")]
     average: Option<f64>,
     /// Reduce the weight of values whose residual exceeds this many sigmas of the noise (Huber); 3 if

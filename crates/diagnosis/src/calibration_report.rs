@@ -25,6 +25,8 @@ pub struct CalibratedRecord<'a> {
     pub bench_name: String,
     /// The record as it is calibrated.
     pub run: Run<'a>,
+    /// The record as it is diagnosed: before fast rows became means of blocks.
+    pub diagnosed: Run<'a>,
     /// Rows before averaging.
     pub rows: usize,
     /// Averaging of its rows.
@@ -81,7 +83,7 @@ pub fn calibrate_and_diagnose(
     told(CalibrationStep::Fitted(&calibration));
     let tests = given.iter().enumerate().filter_map(|(index, one)| {
         let options = DiagnoseOptions::default();
-        diagnose_calibrated(&one.name, &one.run, axes.get(index), &options)
+        diagnose_calibrated(&one.name, &one.diagnosed, axes.get(index), &options)
             .inspect_err(|error| told(CalibrationStep::NotDiagnosed(&one.name, error)))
             .ok()
     });
@@ -149,7 +151,7 @@ fn records(all: &[CalibratedRecord<'_>]) -> Vec<RecordReport> {
             record: one.name.clone(),
             bench: one.bench_name.clone(),
             rows: one.rows,
-            duration_s: one.run.record.duration_s(),
+            duration_s: one.diagnosed.record.duration_s(),
             averaged: one.averaged,
             overlaps: overlaps.map(|other| other.name.clone()).collect(),
         }

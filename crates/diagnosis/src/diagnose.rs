@@ -44,7 +44,7 @@ use gyro_noise::{gyro_noise_findings, over_declared};
 use gyrocal_answer::{Answer, FalseAlarmShares, Gain};
 pub use later::predict_later;
 use noise_audited_fit::{AuditedFit, noise_audited_fit};
-use of_blocks::diagnose_sound;
+use of_blocks::{diagnose_in_blocks, diagnose_sound};
 pub(crate) use of_calibration::diagnose_calibrated;
 pub use options::DiagnoseOptions;
 use options::{search_options, selection};

@@ -120,6 +120,8 @@ struct Sound<'a> {
     /// Rows before averaging.
     rows: usize,
     averaged: Option<AveragedReport>,
+    /// Record and bench description before fast rows became means of blocks.
+    before: Option<(Cow<'a, Record>, Cow<'a, Bench>)>,
     setup: Vec<SetupProblem>,
 }
 
@@ -187,6 +189,10 @@ impl<'a> Sound<'a> {
             name: self.given.record.input.path.clone(),
             bench_name: self.given.bench.input.path.clone(),
             run: self.run(),
+            diagnosed: match &self.before {
+                Some((record, bench)) => Run { record, bench },
+                None => self.run(),
+            },
             rows: self.rows,
             averaged: self.averaged,
             setup: &self.setup,
@@ -215,6 +221,10 @@ impl<'a> Sound<'a> {
                 averaged: Some(blocks.report),
                 bench: Cow::Owned(blocks.bench),
                 record: Cow::Owned(blocks.record),
+                before: request
+                    .average_s
+                    .is_none()
+                    .then_some((self.record, self.bench)),
                 ..self
             },
             None => self,
@@ -240,6 +250,7 @@ fn sound<'a>(
                 record,
                 bench: Cow::Borrowed(&one.bench.bench),
                 averaged: None,
+                before: None,
                 setup: gate.problems,
             });
         }

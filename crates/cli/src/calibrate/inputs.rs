@@ -18,6 +18,8 @@ pub(super) struct Measurement {
     pub(super) bench_path: PathBuf,
     pub(super) record: Record,
     pub(super) bench: Bench,
+    /// Record and bench description before fast rows became means of blocks.
+    before: Option<(Record, Bench)>,
     /// Rows before averaging.
     pub(super) rows: usize,
     pub(super) averaged: Option<AveragedReport>,
@@ -40,6 +42,10 @@ impl Measurement {
             name: self.path.display().to_string(),
             bench_name: self.bench_path.display().to_string(),
             run: self.run(),
+            diagnosed: match &self.before {
+                Some((record, bench)) => Run { record, bench },
+                None => self.run(),
+            },
             rows: self.rows,
             averaged: self.averaged,
             setup: &self.setup,
@@ -64,6 +70,7 @@ pub(super) fn read(arguments: &CalibrateArguments) -> Result<Vec<Measurement>, F
             bench_path: bench_path.clone(),
             bench: bench.clone(),
             averaged: None,
+            before: None,
             stops,
             rows: record.len(),
             record,
@@ -120,9 +127,10 @@ fn take_means(
         None => None,
     };
     if let Some(blocks) = blocks {
+        let record = std::mem::replace(&mut measurement.record, blocks.record);
+        let bench = std::mem::replace(&mut measurement.bench, blocks.bench);
+        measurement.before = arguments.average.is_none().then_some((record, bench));
         measurement.averaged = Some(blocks.report);
-        measurement.bench = blocks.bench;
-        measurement.record = blocks.record;
     }
     Ok(())
 }

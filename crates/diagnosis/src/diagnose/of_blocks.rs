@@ -27,28 +27,39 @@ pub(super) fn diagnose_sound<'a>(
 ) -> Result<Diagnosis<'a>, DiagnosisError> {
     let run = Run { record, bench };
     let reads_rows = options.filter.is_some();
-    let blocks = (!reads_rows).then(|| Blocks::of(&run, axes)).flatten();
-    if let Some(blocks) = blocks {
-        let means = blocks.run();
-        let found = diagnose_rows(
-            means.record,
-            means.bench,
-            None,
-            options,
-            setup.clone(),
-            watch,
-        );
-        if let Ok(mut found) = found
-            && holds(&blocks, &found)
-        {
-            found.result.record = RecordSummary {
-                averaged: Some(blocks.report),
-                ..record_summary(record)
-            };
-            return Ok(found.into_owned());
-        }
+    match (!reads_rows).then(|| Blocks::of(&run, axes)).flatten() {
+        Some(blocks) => diagnose_in_blocks(&blocks, &run, options, setup, watch),
+        None => diagnose_rows(record, bench, axes, options, setup, watch),
     }
-    diagnose_rows(record, bench, axes, options, setup, watch)
+}
+
+/// The diagnosis of the blocks of a record, or that of its rows if that of the blocks does not hold.
+pub(super) fn diagnose_in_blocks<'a>(
+    blocks: &Blocks,
+    Run { record, bench }: &Run<'a>,
+    options: &DiagnoseOptions,
+    setup: Vec<SetupProblem>,
+    watch: &mut dyn FnMut(Stage),
+) -> Result<Diagnosis<'a>, DiagnosisError> {
+    let means = blocks.run();
+    let found = diagnose_rows(
+        means.record,
+        means.bench,
+        None,
+        options,
+        setup.clone(),
+        watch,
+    );
+    if let Ok(mut found) = found
+        && holds(blocks, &found)
+    {
+        found.result.record = RecordSummary {
+            averaged: Some(blocks.report),
+            ..record_summary(record)
+        };
+        return Ok(found.into_owned());
+    }
+    diagnose_rows(record, bench, None, options, setup, watch)
 }
 
 /// Whether a diagnosis of the means holds for the rows. Rows without outliers have means without: what stands out is a

@@ -2,20 +2,21 @@
 
 use gyrocal_answer::{Answer, Finding, FindingKind, ResidualVerdict};
 use gyrocal_calibration::{GyroAxes, Run};
-use gyrocal_record::{EffectTest, NamedCause};
+use gyrocal_record::{EffectTest, NamedCause, SetupProblem};
 
-use super::{DiagnoseOptions, diagnose_sound};
+use super::{DiagnoseOptions, Diagnosis, diagnose_in_blocks, diagnose_rows};
 use crate::blocks::Blocks;
 use crate::error::DiagnosisError;
+use crate::stage::Stage;
 
-/// A record with more rows is averaged before it is diagnosed.
+/// A record with more rows that are not white is averaged before it is diagnosed.
 const MOST_ROWS: usize = 10_000;
 
 /// Longest interval of such means, s: only attitude jumps lose power by it.
 const LONGEST_MEAN_S: f64 = 600.0;
 
-/// What [`super::diagnose`] says of a record whose set-up was checked; `file` is its name. Of a record of many rows
-/// means are diagnosed, unless it has the axes of the instruments of a strapdown unit.
+/// What [`super::diagnose`] says of a record whose set-up was checked; `file` is its name. Of a record of many rows that
+/// are not white, means are diagnosed, unless it has the axes of the instruments of a strapdown unit.
 ///
 /// # Errors
 /// [`DiagnosisError`].
@@ -25,22 +26,18 @@ pub(crate) fn diagnose_calibrated(
     axes: Option<&GyroAxes>,
     options: &DiagnoseOptions,
 ) -> Result<EffectTest, DiagnosisError> {
-    let of = |run: &Run<'_>| {
-        diagnose_sound(
-            run.record,
-            run.bench,
-            axes,
-            options,
-            Vec::new(),
-            &mut |_| (),
-        )
-        .map(|found| effect_test(file, &found.result))
+    let (setup, watch): (Vec<SetupProblem>, &mut dyn FnMut(Stage)) = (Vec::new(), &mut |_| ());
+    let found = if let Some(blocks) = Blocks::of(run, axes) {
+        diagnose_in_blocks(&blocks, run, options, setup, watch)
+    } else {
+        let interval_s = mean_interval_s(run).filter(|_| axes.is_none());
+        let means = interval_s.and_then(|length_s| Blocks::every(run, length_s).ok());
+        let means = means.as_ref().map(Blocks::run);
+        let Run { record, bench } = means.as_ref().unwrap_or(run);
+        let found = diagnose_rows(record, bench, axes, options, setup, watch);
+        found.map(Diagnosis::into_owned)
     };
-    let interval_s = mean_interval_s(run).filter(|_| axes.is_none());
-    match interval_s.and_then(|length_s| Blocks::every(run, length_s).ok()) {
-        Some(means) => of(&means.run()),
-        None => of(run),
-    }
+    found.map(|found| effect_test(file, &found.result))
 }
 
 /// The interval of means, if the record has many rows.

@@ -1,8 +1,11 @@
 //! Rows that come faster than anything moves, as means of blocks.
 
 use gyrocal_calibration::{Calibration, Options, Run, calibrate};
-use gyrocal_diagnosis::{Blocks, DiagnoseOptions, diagnose};
-use gyrocal_record::{Bench, Record};
+use gyrocal_diagnosis::{
+    Blocks, CalibratedRecord, CalibrationRequest, DiagnoseOptions, calibrate_and_diagnose,
+    diagnose, manifest,
+};
+use gyrocal_record::{Bench, CalibrationMethod, Record};
 use gyrocal_truth::{Coefficients, Hidden, InitialAttitude, Scenario, Simulation, simulate};
 
 /// A row in two seconds.
@@ -132,10 +135,10 @@ fn no_block_reaches_over_a_jump_and_it_is_found_alone() {
 
 #[test]
 fn a_drift_that_changes_by_degrees_an_hour_has_no_outliers() {
-    // Within the block of its onset the attitude has a kink of some standard deviations of a mean.
+    // Within the block of its onset the attitude has a kink: its mean is off by 8 standard deviations.
     let parameters = [("size", 2.0), ("onset_s", 37_006.0)];
     let step = Hidden::new("gyro_z.step", &parameters).unwrap();
-    let Simulation { record, bench, .. } = fast(13, 12.0, vec![step]);
+    let Simulation { record, bench, .. } = fast(13, 24.0, vec![step]);
     let found = diagnose(&record, &bench, &DiagnoseOptions::default()).unwrap();
     let names: Vec<&str> = found
         .result
@@ -144,6 +147,46 @@ fn a_drift_that_changes_by_degrees_an_hour_has_no_outliers() {
         .map(|one| one.effect.as_str())
         .collect();
     assert_eq!(names, ["gyro_z.step"]);
+}
+
+#[test]
+fn a_calibration_says_of_fast_rows_what_a_diagnosis_says() {
+    // So late that few blocks are behind it: the means alone have outliers and no knock.
+    let parameters = [("x_deg", 0.01), ("y_deg", -0.01), ("onset_s", 43_180.0)];
+    let knock = Hidden::new("platform.knock", &parameters).unwrap();
+    let Simulation { record, bench, .. } = fast(14, 12.0, vec![knock]);
+    let run = Run {
+        record: &record,
+        bench: &bench,
+    };
+    let means = Blocks::of(&run, None).unwrap();
+    let request = CalibrationRequest {
+        method: CalibrationMethod::Batch,
+        options: Options::default(),
+        records: vec![CalibratedRecord {
+            name: "record".to_owned(),
+            bench_name: "bench".to_owned(),
+            run: means.run(),
+            diagnosed: run,
+            rows: record.len(),
+            averaged: Some(means.report),
+            setup: &[],
+        }],
+        axes: &[],
+        with_effects: None,
+        manifest: manifest(0),
+    };
+    let report = calibrate_and_diagnose(request, |_| ()).unwrap();
+    let calibrated = &report.effects[0];
+    let found = diagnose(&record, &bench, &DiagnoseOptions::default()).unwrap();
+    let causes: Vec<&str> = found.result.causes().map(|one| &*one.effect).collect();
+    assert_eq!(causes, ["platform.knock"]);
+    // The answer of the means did not hold.
+    assert!(found.result.record.averaged.is_none());
+    let named = calibrated.causes.iter().map(|one| &*one.effect);
+    assert_eq!(named.collect::<Vec<&str>>(), causes);
+    assert!(calibrated.noise.is_empty(), "{:?}", calibrated.noise);
+    assert_eq!(report.records[0].duration_s, record.duration_s());
 }
 
 #[test]

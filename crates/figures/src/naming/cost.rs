@@ -112,6 +112,10 @@ fn calibrated(simulation: &Simulation) -> Result<CalibrationReport, Error> {
             name: "record".to_owned(),
             bench_name: "bench".to_owned(),
             run,
+            diagnosed: Run {
+                record: &simulation.record,
+                bench: &simulation.bench,
+            },
             rows: simulation.record.len(),
             averaged,
             setup: &[],
