@@ -55,7 +55,8 @@ enum OwnCommand {
     Simulate(simulate::SimulateArguments),
 }
 
-/// Arguments of a command with a plant before them.
+// A comment of documentation would be the help of each command.
+// Arguments of a command with a plant before them.
 #[derive(Debug, Args)]
 struct OfPlant<T: Args> {
     /// The plant: the program file that its Python script writes.

@@ -24,6 +24,8 @@ pub struct Simulation {
     pub states: Vec<SimulatedCourse>,
     /// The outputs, without noise of the sensors.
     pub outputs: Vec<SimulatedCourse>,
+    /// Parameters that the fit held, since its record does not determine them: the standard deviations leave them out.
+    pub held: Vec<String>,
 }
 
 /// A state or an output at each row.
@@ -67,6 +69,7 @@ impl Simulation {
 struct Known {
     values: Vec<f64>,
     covariance: DMatrix<f64>,
+    held: Vec<String>,
 }
 
 /// Simulates a run with the estimates of a fit and their covariance; without a fit with the declared values, of which
@@ -122,6 +125,7 @@ pub fn simulate(
         time_s: problem.record.time_s.clone(),
         states: courses(state_names, &points, &state_sigmas),
         outputs: courses(output_names, &outputs, &output_sigmas),
+        held: known.held,
     })
 }
 
@@ -141,6 +145,7 @@ impl Known {
         Self {
             values: vec![0.0; variances.len()],
             covariance: DMatrix::from_diagonal(&DVector::from_vec(variances)),
+            held: Vec::new(),
         }
     }
 
@@ -152,6 +157,9 @@ impl Known {
             problem,
             advice: format!("give what `plant fit --json` of {} wrote", description.name),
         };
+        if fit.plant != description.name {
+            return Err(refuse(format!("it is no fit of {}", description.name)));
+        }
         let all = &fit.coefficients;
         let count = all.nominal.len();
         let rows = all.covariance.iter();
@@ -176,6 +184,13 @@ impl Known {
             covariance: DMatrix::from_fn(known.len(), known.len(), |i, j| {
                 all.covariance[known[i].0][known[j].0]
             }),
+            // What no record determines changes no output.
+            held: fit
+                .undetermined
+                .iter()
+                .filter(|direction| !direction.is_gauge)
+                .filter_map(|direction| direction.held.clone())
+                .collect(),
         })
     }
 }

@@ -48,7 +48,7 @@ pub(super) struct FitArguments {
 #[derive(Debug, Args)]
 pub(super) struct CompareArguments {
     /// The plants, two or more, with the same inputs and outputs; then the record (CSV).
-    #[arg(value_name = "PLANT.json PLANT.json RECORD.csv", required = true, num_args = 3..)]
+    #[arg(value_names = ["PLANT.json", "PLANT.json", "RECORD.csv"], required = true, num_args = 3..)]
     paths: Vec<PathBuf>,
     #[command(flatten)]
     files: Files,

@@ -63,6 +63,11 @@ pub(super) fn run(
             format!("standard deviation at most {most} {}", one.unit),
         );
     }
+    if !simulated.held.is_empty() {
+        let held = simulated.held.join(", ");
+        let why = "held in the fit, whose record does not determine it; the standard deviations leave it out";
+        screen.fact("not known", format!("{held}: {why}"));
+    }
     let mut shown = Reply::of(screen, String::new());
     let what = "states and outputs with standard deviations";
     shown.write(output, what, |path| Ok(simulated.table().content(path)?))?;

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
-use gyrocal_answer::PlantFit;
+use gyrocal_answer::{NullDirection, PlantFit};
 use gyrocal_plant::{
     Fit, LoadedPlant, NamedRecord, PlantError, PlantRecord, compare, fit, simulate,
 };
@@ -393,11 +393,34 @@ fn bands_of_a_simulation_are_those_of_drawn_parameters() {
         },
         ..CLEAN.answer.clone()
     };
-    let refused = simulate(&plant, named("run", run), Some(&other))
-        .unwrap_err()
-        .to_string();
+    let refused = |fit: &PlantFit| {
+        let simulated = simulate(&plant, named("run", run.clone()), Some(fit));
+        simulated.unwrap_err().to_string()
+    };
+    let without = refused(&other);
     assert!(
-        refused.contains("it has no estimate of initial x"),
-        "{refused}"
+        without.contains("it has no estimate of initial x"),
+        "{without}"
     );
+    let of_another = PlantFit {
+        plant: "Pendulum".to_owned(),
+        ..CLEAN.answer.clone()
+    };
+    let of_another = refused(&of_another);
+    assert!(
+        of_another.contains("it is no fit of Duffing"),
+        "{of_another}"
+    );
+    // A held parameter has no standard deviation of its own, which is told.
+    let direction = |is_gauge: bool, held: &str| NullDirection {
+        is_gauge,
+        parts: Vec::new(),
+        held: Some(held.to_owned()),
+    };
+    let held = PlantFit {
+        undetermined: vec![direction(false, "g"), direction(true, "k")],
+        ..CLEAN.answer.clone()
+    };
+    let simulated = simulate(&plant, named("run", run.clone()), Some(&held)).unwrap();
+    assert_eq!(simulated.held, ["g"]);
 }
