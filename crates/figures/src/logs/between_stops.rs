@@ -41,11 +41,13 @@ const NOISES: [(&str, [f64; 3]); 6] = [
 const OF_KNOWN_SIGMA: [usize; 3] = [0, 3, 4];
 
 /// Stops, first seed, size of hidden terms in standard deviations, and least share of them that is found.
-const TESTS: [(usize, u64, f64, f64); 4] = [
+const TESTS: [(usize, u64, f64, f64); 6] = [
     (6, 840_000, 20.0, 0.8),
     (8, 850_000, 12.0, 0.85),
     (12, 860_000, 8.0, 0.9),
+    (14, 890_000, 8.0, 0.9),
     (20, 870_000, 8.0, 0.9),
+    (38, 905_000, 8.0, 0.9),
 ];
 
 /// A sixth of the records of the full size are of each noise: half of those in which terms are hidden have one.
