@@ -173,11 +173,8 @@ fn checked_inputs(arguments: &DiagnoseArguments) -> Result<Vec<(InputRole, &Path
     ];
     let json = arguments.json.as_deref();
     arguments.views.check(&inputs, json, &tables)?;
-    refuse_itself(
-        "--validate",
-        arguments.validate.as_deref(),
-        &arguments.given.records,
-    )?;
+    let later = arguments.validate.as_deref();
+    refuse_itself("--validate", later, &arguments.given.records)?;
     if arguments.effects.iter().any(|id| id == FILTER_EFFECT) {
         return Err(Failure::Usage(format!(
             "{} is an error of a filter and not of the record: --filter euler tests it",

@@ -72,24 +72,17 @@ pub(crate) fn run(arguments: &EmitArguments) -> Result<Reply, Failure> {
 
 fn screen(arguments: &EmitArguments, number: Number, effects: &[String]) -> Screen {
     let out = printable_path(&arguments.out);
-    let mut screen = Screen::new(
-        Standing::Good,
-        "FILTER",
-        format!("{out}: one file in {}, core only", number.name()),
-    );
+    let what = format!("{out}: one file in {}, core only", number.name());
+    let mut screen = Screen::new(Standing::Good, "FILTER", what);
     let estimated = match effects {
         [] => "the nine drift coefficients".to_owned(),
         effects => format!("the nine drift coefficients and {}", effects.join(", ")),
     };
     screen.fact("estimates", estimated);
-    screen.fact(
-        "compile",
-        format!("rustc --edition 2024 --crate-type lib {out}"),
-    );
-    screen.fact(
-        "its tests",
-        format!("rustc --edition 2024 -O --test -o filter_tests {out} && ./filter_tests"),
-    );
+    let rustc = "rustc --edition 2024";
+    screen.fact("compile", format!("{rustc} --crate-type lib {out}"));
+    let tests = format!("{rustc} -O --test -o filter_tests {out} && ./filter_tests");
+    screen.fact("its tests", tests);
     screen.fact("what to do", "put it into a controller: docs/embedding.md");
     screen
 }

@@ -85,10 +85,8 @@ pub(crate) fn run(arguments: &ExtendArguments) -> Result<Reply, Failure> {
     };
     let mut screen = summary(arguments, &extension);
     if !is_settled {
-        screen.fact(
-            "not settled",
-            "the diagnosis did not settle these names: other effects may be the cause",
-        );
+        let words = "the diagnosis did not settle these names: other effects may be the cause";
+        screen.fact("not settled", words);
     }
     let mut shown = Reply::of(screen, String::new());
     let text = extension.model.to_toml(&arguments.out, &known_effects())?;
@@ -133,9 +131,11 @@ fn summary(arguments: &ExtendArguments, extension: &ModelExtension) -> Screen {
         );
         screen.fact("start value", words);
     }
-    for (id, value) in &model.shapes {
-        screen.fact("built in", format!("{id} is {value}"));
-    }
+    let shapes = model.shapes.iter();
+    screen.each(
+        "built in",
+        shapes.map(|(id, value)| format!("{id} is {value}")),
+    );
     let known = known_effects();
     let own = known.iter();
     let own = own.filter(|one| model.effects.iter().any(|id| id == one.id));
@@ -150,9 +150,11 @@ fn summary(arguments: &ExtendArguments, extension: &ModelExtension) -> Screen {
         let words = format!("exact equivalents of {id}: {}", others.join(", "));
         screen.fact("may also be", words);
     }
-    for one in &extension.left_out {
-        screen.fact("left out", format!("{} {}", one.effect, one.why));
-    }
+    let left_out = extension.left_out.iter();
+    screen.each(
+        "left out",
+        left_out.map(|one| format!("{} {}", one.effect, one.why)),
+    );
     let words = "derive the filter in your package: docs/extending.md";
     screen.fact("what to do", words);
     screen

@@ -11,6 +11,7 @@ use gyrocal_record::{Outputs, printable_path};
 use miette::miette;
 
 use crate::Failure;
+use crate::outputs::make_folder;
 use crate::reply::Reply;
 
 /// Print the completions of a shell.
@@ -41,23 +42,13 @@ pub(crate) fn completions(
 /// Runs `gyrocal man` of a command line: writes all pages or none.
 pub(crate) fn pages(arguments: &ManArguments, mut definition: Command) -> Result<Reply, Failure> {
     let folder = &arguments.folder;
-    let refused = |reason: std::io::Error| {
-        Failure::Work(miette!(
-            help = "give a folder, or a name that is free",
-            "{}: cannot be made: {reason}",
-            printable_path(folder)
-        ))
-    };
-    std::fs::create_dir_all(folder).map_err(refused)?;
+    make_folder("", folder)?;
     definition.build();
     let mut outputs = Outputs::new();
     let mut names = Vec::new();
     stage(&definition, folder, &mut outputs, &mut names)?;
-    let mut screen = Screen::new(
-        Standing::Neutral,
-        "WROTE",
-        format!("{} manual pages in {}", names.len(), printable_path(folder)),
-    );
+    let what = format!("{} manual pages in {}", names.len(), printable_path(folder));
+    let mut screen = Screen::new(Standing::Neutral, "WROTE", what);
     screen.fact("pages", names.join(", "));
     Ok(Reply {
         outputs,

@@ -1,11 +1,10 @@
 //! Shared parts of the commands on logs of real sensors.
 
-use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
-use gyrocal_instruments::InstrumentError;
+use gyrocal_instruments::{Description, InstrumentError, Log};
 use gyrocal_record::printable_path;
-use miette::Diagnostic;
+use miette::miette;
 
 use crate::Failure;
 
@@ -18,36 +17,34 @@ pub(crate) fn unusable(log: &Path, error: InstrumentError) -> Failure {
             expected,
             advice,
             ..
-        } => Failure::Work(
-            Unusable {
-                log: log.to_owned(),
-                found,
-                expected,
-                advice,
-            }
-            .into(),
-        ),
+        } => Failure::Work(miette!(
+            code = "gyrocal::measured::unfit",
+            help = advice,
+            "{}: found {found}, expected {expected}",
+            printable_path(log)
+        )),
         other => Failure::of(log, other),
     }
 }
 
-#[derive(Debug, thiserror::Error)]
-#[error("{}: found {found}, expected {expected}", printable_path(log))]
-struct Unusable {
-    log: PathBuf,
-    found: String,
-    expected: String,
-    advice: String,
-}
-
-impl Diagnostic for Unusable {
-    fn code<'a>(&'a self) -> Option<Box<dyn Display + 'a>> {
-        Some(Box::new("gyrocal::measured::unfit"))
-    }
-
-    fn help<'a>(&'a self) -> Option<Box<dyn Display + 'a>> {
-        Some(Box::new(&self.advice))
-    }
+/// Logs of one unit, each read by the description in this file, and what there is to tell of their clocks.
+pub(crate) fn logs<T>(
+    paths: &[PathBuf],
+    description: &Path,
+    read: impl Fn(&Path, &Description) -> Result<T, InstrumentError>,
+    log: impl Fn(&T) -> &Log,
+) -> Result<(Description, Vec<T>, Vec<String>), Failure> {
+    let description =
+        Description::read(description).map_err(|error| unusable(&paths[0], error.into()))?;
+    let logs = paths.iter();
+    let logs = logs.map(|path| read(path, &description).map_err(|error| unusable(path, error)));
+    let logs: Vec<T> = logs.collect::<Result<_, _>>()?;
+    let mut notes: Vec<String> = logs
+        .iter()
+        .filter_map(|one| log(one).clock.note())
+        .collect();
+    notes.dedup();
+    Ok((description, logs, notes))
 }
 
 /// Parses `FROM:TO`.

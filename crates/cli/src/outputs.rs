@@ -6,6 +6,7 @@ use std::sync::{PoisonError, RwLock};
 
 use gyrocal_answer::{Answer, write_text};
 use gyrocal_record::{Error, Input, InputRole, Manifest, Outputs, printable_path, shell_quoted};
+use miette::miette;
 
 use crate::reply::{RESULT, Reply};
 use crate::{Failure, pictures};
@@ -55,15 +56,11 @@ pub(crate) fn refuse_overlap(
     inputs: &[&Path],
     outputs: &[(&str, Option<&Path>)],
 ) -> Result<(), Failure> {
-    let mut taken: Vec<(String, PathBuf)> = inputs
-        .iter()
-        .map(|path| {
-            (
-                format!("the input {}", printable_path(path)),
-                identity(path),
-            )
-        })
-        .collect();
+    let read = inputs.iter().map(|path| {
+        let name = format!("the input {}", printable_path(path));
+        (name, identity(path))
+    });
+    let mut taken: Vec<(String, PathBuf)> = read.collect();
     for (option, path) in outputs {
         let Some(path) = path else { continue };
         let place = identity(path);
@@ -112,6 +109,17 @@ pub(crate) fn refuse_unwritable(
         }
     }
     Ok(())
+}
+
+/// Makes a folder of outputs, which `option` gives.
+pub(crate) fn make_folder(option: &str, folder: &Path) -> Result<(), Failure> {
+    std::fs::create_dir_all(folder).map_err(|reason| {
+        Failure::Work(miette!(
+            help = "give a folder, or a name that is free",
+            "{option}{}: cannot be made: {reason}",
+            printable_path(folder)
+        ))
+    })
 }
 
 /// Whether the folder of a file does not exist yet, and is created with another folder.

@@ -1,15 +1,14 @@
 //! Pictures as files.
 
-use std::fs;
 use std::path::Path;
 
 use gyrocal_record::{Outputs, printable_path};
 use gyrocal_report::Picture;
-use miette::miette;
 #[cfg(feature = "png")]
 use miette::{IntoDiagnostic as _, WrapErr as _};
 
 use crate::Failure;
+use crate::outputs::make_folder;
 
 /// The help of `--figures`.
 pub(crate) const HELP: &str = if cfg!(feature = "png") {
@@ -46,13 +45,7 @@ pub(crate) fn stage(
     folder: &Path,
     outputs: &mut Outputs,
 ) -> Result<String, Failure> {
-    fs::create_dir_all(folder).map_err(|reason| {
-        Failure::Work(miette!(
-            help = "give a folder, or a name that is free",
-            "--figures {}: cannot be made: {reason}",
-            printable_path(folder)
-        ))
-    })?;
+    make_folder("--figures ", folder)?;
     let mut names = Vec::new();
     for (name, picture) in pictures {
         let svg = match picture.to_svg() {

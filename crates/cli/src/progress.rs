@@ -43,10 +43,9 @@ impl Progress {
         let mut progress = Self::new(label, rows);
         progress.of_stages = true;
         if progress.wanted {
-            let style = ProgressStyle::with_template("{msg} {spinner} {elapsed}");
             let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden())
                 .with_message(label)
-                .with_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()));
+                .with_style(style("{msg} {spinner} {elapsed}"));
             let later = bar.downgrade();
             std::thread::spawn(move || {
                 std::thread::sleep(PATIENCE);
@@ -98,18 +97,20 @@ impl Progress {
                     false => write!(out, "about {} left", HumanDuration(left)),
                 };
             };
-            let style = ProgressStyle::with_template("{msg} {spinner} {left}");
-            let style = style.unwrap_or_else(|_| ProgressStyle::default_spinner());
-            bar.set_style(style.with_key("left", left));
+            bar.set_style(style("{msg} {spinner} {left}").with_key("left", left));
         }
         bar.enable_steady_tick(TICK);
     }
 
     fn visible(&self) -> ProgressBar {
         let bar = ProgressBar::new(self.total as u64).with_message(self.label);
-        let style = ProgressStyle::with_template("{msg} {wide_bar} {percent}% {eta} left");
-        bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+        bar.with_style(style("{msg} {wide_bar} {percent}% {eta} left"))
     }
+}
+
+/// The style of a template, which is part of the program.
+pub(crate) fn style(template: &str) -> ProgressStyle {
+    ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar())
 }
 
 impl Drop for Progress {

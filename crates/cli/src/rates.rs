@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use gyrocal_instruments::rates::{RateReport, RateSettings, evaluate_rates};
-use gyrocal_instruments::{Description, Log, ResultFile};
+use gyrocal_instruments::{Log, ResultFile};
 use gyrocal_pages::of_rates;
 
-use crate::measured::unusable;
+use crate::measured::{logs, unusable};
 use crate::numbers::{angle_sigma_deg, probability};
 use crate::outputs::{self, manifest};
 use crate::{Failure, Reply};
@@ -55,20 +55,13 @@ pub(crate) fn run(arguments: &RatesArguments) -> Result<Reply, Failure> {
 
 /// The evaluation, and what there is to tell of the clocks.
 fn work(arguments: &RatesArguments) -> Result<(RateReport, Vec<String>), Failure> {
-    let first = &arguments.logs[0];
-    let description = Description::read(&arguments.log_description)
-        .map_err(|error| unusable(first, error.into()))?;
-    let mut logs = Vec::with_capacity(arguments.logs.len());
-    for path in &arguments.logs {
-        logs.push(Log::read(path, &description).map_err(|error| unusable(path, error))?);
-    }
-    let mut notes: Vec<String> = logs.iter().filter_map(|log| log.clock.note()).collect();
-    notes.dedup();
+    let paths = &arguments.logs;
+    let (description, logs, notes) = logs(paths, &arguments.log_description, Log::read, |log| log)?;
     let settings = RateSettings {
         false_alarm_probability: arguments.false_alarm,
         level_sigma_deg: arguments.level_sigma_deg,
     };
-    let report =
-        evaluate_rates(&logs, &description, &settings).map_err(|error| unusable(first, error))?;
+    let report = evaluate_rates(&logs, &description, &settings)
+        .map_err(|error| unusable(&paths[0], error))?;
     Ok((report, notes))
 }

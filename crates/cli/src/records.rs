@@ -84,7 +84,10 @@ impl Given {
 
     /// Kind of the platform.
     pub(crate) fn kind(&self) -> PlatformKind {
-        gyro_axes::kind(&self.gyro_axes)
+        match self.gyro_axes.is_empty() {
+            true => PlatformKind::Stabilised,
+            false => PlatformKind::Computed,
+        }
     }
 
     /// Refuses other numbers of bench files and axes than those of the records.
@@ -96,7 +99,13 @@ impl Given {
                 counted(records, "record")
             )));
         }
-        gyro_axes::check(&self.gyro_axes, records)
+        match self.gyro_axes.len() {
+            0 => Ok(()),
+            axes if axes == records => Ok(()),
+            axes => Err(Failure::Usage(format!(
+                "{axes} of --gyro-axes for {records} of records: give one for each record, in their order"
+            ))),
+        }
     }
 
     /// Each record with its bench file.

@@ -111,13 +111,9 @@ pub(crate) fn run(arguments: &ReportArguments) -> Result<Reply, Failure> {
             part.sections.push(of_spread(spread));
         }
         let sections = found.records.iter().map(of_budget);
-        let sections: Vec<_> = sections
-            .chain(found.spread.as_ref().map(of_spread))
-            .collect();
-        answer = Reply::of(
-            uncertainty_screen(&found),
-            layout::layout(&read_sections(&sections)),
-        );
+        let sections = sections.chain(found.spread.as_ref().map(of_spread));
+        let details = layout::layout(&read_sections(&sections.collect::<Vec<_>>()));
+        answer = Reply::of(uncertainty_screen(&found), details);
         if let Some(path) = json {
             answer.outputs.stage_json(path, &found)?;
             answer.wrote(path, "uncertainty budgets");

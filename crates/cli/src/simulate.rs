@@ -76,17 +76,14 @@ pub(crate) fn run(arguments: &SimulateArguments) -> Result<Reply, Failure> {
 }
 
 fn summary(arguments: &SimulateArguments, scenario: &Scenario, simulation: &Simulation) -> Screen {
-    let mut screen = Screen::new(
-        Standing::Neutral,
-        "SIMULATED",
-        format!(
-            "{}: {} rows over {:.2} days, seed {}",
-            printable_path(&arguments.out),
-            simulation.record.len(),
-            simulation.record.duration_s() / 86_400.0,
-            scenario.seed
-        ),
+    let what = format!(
+        "{}: {} rows over {:.2} days, seed {}",
+        printable_path(&arguments.out),
+        simulation.record.len(),
+        simulation.record.duration_s() / 86_400.0,
+        scenario.seed
     );
+    let mut screen = Screen::new(Standing::Neutral, "SIMULATED", what);
     let ids: Vec<&str> = simulation.truth.hidden.iter().map(Hidden::id).collect();
     screen.fact("hidden effects", ids.join(", "));
     if let Some(bench) = &arguments.bench_out {

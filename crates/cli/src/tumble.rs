@@ -13,7 +13,7 @@ use gyrocal_instruments::{
 };
 use gyrocal_pages::{TumbleAnswer, of_tumble};
 
-use crate::measured::{interval, unusable};
+use crate::measured::{interval, logs, unusable};
 use crate::numbers::{positive, probability};
 use crate::outputs::{self, manifest};
 use crate::page::Views;
@@ -94,21 +94,12 @@ pub(crate) fn run(arguments: &TumbleArguments) -> Result<Reply, Failure> {
 
 /// The test, and what there is to tell of the clocks.
 fn work(arguments: &TumbleArguments) -> Result<(PreparedTest, TumbleResult, Vec<String>), Failure> {
-    let of_log = |log: &Path, error| unusable(log, error);
-    let first = &arguments.logs[0];
-    let description = Description::read(&arguments.log_description)
-        .map_err(|error| of_log(first, error.into()))?;
-    let mut logs = Vec::with_capacity(arguments.logs.len());
-    for path in &arguments.logs {
-        logs.push(log_with_stops(arguments, path, &description).map_err(|e| of_log(path, e))?);
-    }
-    let mut notes: Vec<String> = logs
-        .iter()
-        .filter_map(|(log, _)| log.clock.note())
-        .collect();
-    notes.dedup();
+    let paths = &arguments.logs;
+    let read =
+        |path: &Path, description: &Description| log_with_stops(arguments, path, description);
+    let (description, logs, notes) = logs(paths, &arguments.log_description, read, |(log, _)| log)?;
     let (prepared, result) =
-        tested(arguments, &logs, &description).map_err(|error| of_log(first, error))?;
+        tested(arguments, &logs, &description).map_err(|error| unusable(&paths[0], error))?;
     Ok((prepared, result, notes))
 }
 

@@ -151,9 +151,8 @@ impl Line {
     /// A line with a name.
     #[must_use]
     pub fn new(label: &str, tint: Tint, kind: LineKind, values: Series) -> Self {
-        let label = label.to_owned();
         Self {
-            label,
+            label: label.to_owned(),
             tint,
             kind,
             values,
@@ -165,9 +164,8 @@ impl Band {
     /// A band with a name between two edges.
     #[must_use]
     pub fn new(label: &str, tint: Tint, [lower, upper]: [Series; 2]) -> Self {
-        let label = label.to_owned();
         Self {
-            label,
+            label: label.to_owned(),
             tint,
             lower,
             upper,

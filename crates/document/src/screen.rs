@@ -88,6 +88,11 @@ impl Screen {
         }
     }
 
+    /// Adds a fact of the same label for each of these words.
+    pub fn each(&mut self, label: &str, words: impl IntoIterator<Item = impl Into<String>>) {
+        words.into_iter().for_each(|words| self.fact(label, words));
+    }
+
     /// Adds a command to run next.
     pub fn then(&mut self, command: impl Into<String>, why: &str) {
         self.next.push(NextStep {

@@ -62,9 +62,7 @@ impl Table {
                 .collect(),
         }
     }
-}
 
-impl Table {
     /// A table of plain cells, with the heads of [`Column::heads`].
     #[must_use]
     pub fn of<Row>(title: &str, heads: &str, rows: impl IntoIterator<Item = Row>) -> Self

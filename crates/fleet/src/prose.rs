@@ -54,12 +54,8 @@ pub fn first_screen(fleet: &FleetResult) -> Screen {
         (true, true) => (Standing::Good, "NOTHING BEYOND SINGLE UNITS"),
     };
     let mut screen = Screen::new(standing, words, verdict(fleet));
-    for cause in &fleet.recurring {
-        screen.fact("recurs", recurring(cause));
-    }
-    for one in &fleet.groups {
-        screen.fact("differs", group(one));
-    }
+    screen.each("recurs", fleet.recurring.iter().map(recurring));
+    screen.each("differs", fleet.groups.iter().map(group));
     screen.fact("fleet", size(fleet));
     screen
 }

@@ -20,15 +20,12 @@ pub fn of_allan(manifest: &Manifest, report: &AllanReport, clock: Option<&str>) 
         gyrocal_words::capitalised(report.estimator),
         format::percent(report.confidence)
     );
-    let deviations = section(
-        "deviation",
-        "Deviations",
-        &format!(
-            "{estimator}. A slope of −1/2 is white noise of the rate (angle random walk), a flat part bias \
+    let lead = format!(
+        "{estimator}. A slope of −1/2 is white noise of the rate (angle random walk), a flat part bias \
              instability, a slope of +1/2 a random walk of the rate."
-        ),
-        vec![Item::Chart(chart(report))],
     );
+    let items = vec![Item::Chart(chart(report))];
+    let deviations = section("deviation", "Deviations", &lead, items);
     let unit = &report.unit;
     let parts = report.columns.iter().flat_map(|column| {
         let mut items = parts(&column.name, column.noise.as_ref(), unit);
@@ -41,23 +38,15 @@ pub fn of_allan(manifest: &Manifest, report: &AllanReport, clock: Option<&str>) 
         }));
         items
     });
-    let parts = section(
-        "parts",
-        "Parts of the noise",
-        "Fitted by the likelihood of the cosine transform of the samples. The flat part of a bias instability B is \
-         0.664 B.",
-        parts.collect(),
-    );
+    let lead = "Fitted by the likelihood of the cosine transform of the samples. The flat part of a bias instability B \
+                is 0.664 B.";
+    let parts = section("parts", "Parts of the noise", lead, parts.collect());
     let points = report
         .columns
         .iter()
         .map(|column| points(column, report).into());
-    let points = section(
-        "points",
-        "Tables",
-        &format!("{estimator}, at each averaging time."),
-        points.collect(),
-    );
+    let lead = format!("{estimator}, at each averaging time.");
+    let points = section("points", "Tables", &lead, points.collect());
     let names: Vec<&str> = report.columns.iter().map(|column| &*column.name).collect();
     Part {
         name: file_name(manifest, 0, "log"),

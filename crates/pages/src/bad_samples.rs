@@ -38,16 +38,9 @@ pub(crate) fn left_out(bad: &[BadSamples], logs: usize) -> String {
 pub(crate) fn table(bad: &[BadSamples], logs: usize) -> Option<Item> {
     let rows = bad.iter().flat_map(|one| {
         one.samples.iter().map(move |sample| {
-            let (time_s, value) = (
-                format::short(sample.time_s, 8),
-                format::short(sample.value, 6),
-            );
-            [
-                of(one, logs),
-                sample.sample.to_string(),
-                time_s,
-                format!("{value} {}", one.unit),
-            ]
+            let value = format!("{} {}", format::short(sample.value, 6), one.unit);
+            let (place, time_s) = (sample.sample.to_string(), format::short(sample.time_s, 8));
+            [of(one, logs), place, time_s, value]
         })
     });
     let title = "Samples left out, as no noise explains them: the median of those about them takes their place";

@@ -11,8 +11,7 @@ use crate::diagnosis::open_loop::{self, Simulated};
 use crate::error::PageError;
 use crate::origin::{file_name, origin};
 use crate::panels;
-use crate::words::listed;
-use crate::words::section;
+use crate::words::{listed, section};
 
 /// A calibrated record with the fit of the nominal model to it alone, for the charts over time.
 pub struct CalibratedRecord<'a, 'b> {
@@ -41,12 +40,9 @@ pub fn of_calibration(
     if report.usable {
         sections.push(estimates(report));
     }
-    sections.push(section(
-        "words",
-        "In words",
-        "Records, verdict with the tests that it rests on, what the records determine, noise, site.",
-        calibration(report).into_iter().map(Item::Words).collect(),
-    ));
+    let lead = "Records, verdict with the tests that it rests on, what the records determine, noise, site.";
+    let items = calibration(report).into_iter().map(Item::Words).collect();
+    sections.push(section("words", "In words", lead, items));
     Ok(Part {
         name: match report.records.len() {
             0 | 1 => file_name(&report.manifest, 0, "record"),
@@ -77,12 +73,9 @@ fn over_time(
     })?
     .into();
     if let Some(chart) = coefficients::convergence(one.record, (one.fit, None))? {
-        sections.push(section(
-            "convergence",
-            "Convergence",
-            "Estimates against the length of the record.",
-            vec![Item::Chart(chart)],
-        ));
+        let lead = "Estimates against the length of the record.";
+        let items = vec![Item::Chart(chart)];
+        sections.push(section("convergence", "Convergence", lead, items));
     }
     if let Some(place) = place {
         for section in &mut sections {
@@ -118,10 +111,7 @@ fn estimates(report: &CalibrationReport) -> Section {
     };
     let meanings = DRIFT.map(|one| [one.id, one.doc].map(str::to_owned));
     let meanings = Table::of("What they are", "coefficient | meaning", meanings);
-    section(
-        "coefficients",
-        "Coefficients",
-        "The nine drift coefficients with their standard deviations.",
-        vec![Item::Estimates(estimates), meanings.into()],
-    )
+    let lead = "The nine drift coefficients with their standard deviations.";
+    let items = vec![Item::Estimates(estimates), meanings.into()];
+    section("coefficients", "Coefficients", lead, items)
 }

@@ -14,19 +14,14 @@ const SHOWN: usize = 40;
 /// The page of what a fleet shows.
 #[must_use]
 pub fn of_fleet(fleet: &FleetResult) -> Part {
-    let mut sections = vec![section(
-        "coefficients",
-        "Coefficients over the units",
-        "Mean and spread of the units, with 95 % intervals. The spread is without the errors of the estimates.",
-        vec![Item::from(prose::coefficients(fleet))],
-    )];
+    let lead = "Mean and spread of the units, with 95 % intervals. The spread is without the errors of the estimates.";
+    let items = vec![Item::from(prose::coefficients(fleet))];
+    let title = "Coefficients over the units";
+    let mut sections = vec![section("coefficients", title, lead, items)];
     if !fleet.recurring.is_empty() {
-        sections.push(section(
-            "recurring",
-            "Causes that recur",
-            "Too weak for one record, and in more units than chance puts them.",
-            vec![Item::Bars(evidence(fleet)), Item::from(units(fleet))],
-        ));
+        let lead = "Too weak for one record, and in more units than chance puts them.";
+        let items = vec![Item::Bars(evidence(fleet)), Item::from(units(fleet))];
+        sections.push(section("recurring", "Causes that recur", lead, items));
     }
     let levels = fleet.coefficients.iter().map(|one| {
         let mut bars: Vec<Bar> = one
@@ -55,18 +50,11 @@ pub fn of_fleet(fleet: &FleetResult) -> Part {
             ..Bars::new(&one.name, &quantity, vec![BarGroup::new(heading, bars)])
         })
     });
-    sections.push(section(
-        "units",
-        "Units",
-        "Each coefficient of each unit, mean over its records.",
-        levels.collect(),
-    ));
-    sections.push(section(
-        "words",
-        "In words",
-        "All that the fleet shows.",
-        prose::all(fleet).into_iter().map(Item::Words).collect(),
-    ));
+    let lead = "Each coefficient of each unit, mean over its records.";
+    sections.push(section("units", "Units", lead, levels.collect()));
+    let lead = "All that the fleet shows.";
+    let items = prose::all(fleet).into_iter().map(Item::Words).collect();
+    sections.push(section("words", "In words", lead, items));
     Part {
         name: "fleet".to_owned(),
         size: format!(

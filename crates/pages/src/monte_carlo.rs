@@ -33,17 +33,14 @@ pub fn of_monte_carlo(report: &MonteCarloReport) -> Part {
         (COVERED, "95 %"),
         |one| one.coverage,
     );
-    let coefficients = section(
-        "coefficients",
-        "Coefficients",
-        "Statistics of a coefficient are over the runs that determine it: sigma below a tenth of the prior's. \
-         In parentheses: 95 % confidence intervals.",
-        vec![
-            Item::Bars(errors),
-            Item::Bars(coverage),
-            coefficients(summary).into(),
-        ],
-    );
+    let lead = "Statistics of a coefficient are over the runs that determine it: sigma below a tenth of the prior's. \
+         In parentheses: 95 % confidence intervals.";
+    let items = vec![
+        Item::Bars(errors),
+        Item::Bars(coverage),
+        coefficients(summary).into(),
+    ];
+    let coefficients = section("coefficients", "Coefficients", lead, items);
     let mut sections = vec![coefficients, consistency(summary)];
     sections.extend(failures(summary));
     Part {
@@ -156,12 +153,9 @@ fn consistency(summary: &CalibrationSummary) -> Section {
             measured(share, 100.0, 1)
         )));
     }
-    section(
-        "consistency",
-        "Consistency",
-        "Squared errors over their covariance (NEES) and squared innovations over theirs (NIS).",
-        items,
-    )
+    let lead =
+        "Squared errors over their covariance (NEES) and squared innovations over theirs (NIS).";
+    section("consistency", "Consistency", lead, items)
 }
 
 fn failures(summary: &CalibrationSummary) -> Option<Section> {

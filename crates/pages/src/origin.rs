@@ -2,6 +2,7 @@
 
 use gyrocal_document::{Origin, OriginFile};
 use gyrocal_record::{Input, Manifest};
+use gyrocal_words::counted;
 
 /// Program, command and files of a manifest.
 pub(crate) fn origin(manifest: &Manifest) -> Origin {
@@ -26,6 +27,14 @@ pub(crate) fn file_name(manifest: &Manifest, place: usize, otherwise: &str) -> S
     let input = manifest.inputs.get(place);
     let name = input.and_then(|input| input.path.rsplit(['/', '\\']).next());
     name.unwrap_or(otherwise).to_owned()
+}
+
+/// Name of a record, the first file, or the number of several.
+pub(crate) fn record_name(manifest: &Manifest, several: usize) -> String {
+    match several {
+        0 => file_name(manifest, 0, "record"),
+        several => counted(several, "record"),
+    }
 }
 
 /// Files by name: the first, and how many follow.

@@ -1,7 +1,9 @@
 //! Panels that the pages of all models have: measured and simulated values over time, what the models leave
 //! of them, and its correlation over rows.
 
-use gyrocal_document::{Band, Chart, Line, LineKind, Panel, TimeAxis, Tint};
+use gyrocal_document::{Band, Chart, Item, Line, LineKind, Panel, Section, TimeAxis, Tint};
+
+use crate::words::section;
 
 /// Names of the models in legends.
 pub(crate) const NOMINAL: &str = "nominal model";
@@ -17,6 +19,23 @@ pub(crate) fn of_models(nominal: Vec<f64>, extended: Option<Vec<f64>>) -> Vec<Li
     let mut lines = vec![line(NOMINAL, Tint::Nominal, nominal)];
     lines.extend(extended.map(|values| line(EXTENDED, Tint::Extended, values)));
     lines
+}
+
+/// The sections over time of charts of simulations and of their residuals, each with what it shows.
+pub(crate) fn sections(leads: [&str; 2], [simulated, left]: [Vec<Chart>; 2]) -> [Section; 2] {
+    let of = |id: &str, title: &str, lead: &str, charts: Vec<Chart>| {
+        section(
+            id,
+            title,
+            lead,
+            charts.into_iter().map(Item::Chart).collect(),
+        )
+    };
+    let title = "Simulation against measurement";
+    [
+        of("simulation", title, leads[0], simulated),
+        of("residual", "Open-loop residual", leads[1], left),
+    ]
 }
 
 /// Panels in a row, at most.

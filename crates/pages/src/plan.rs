@@ -3,39 +3,28 @@
 use gyrocal_design::{AttitudeOf, PlanResult, Proposal, prose, tables};
 use gyrocal_document::{Bar, BarGroup, Bars, Item, Part, Tint};
 use gyrocal_statistics::format;
-use gyrocal_words::{counted, size};
+use gyrocal_words::size;
 
-use crate::origin::{file_name, origin};
+use crate::origin::{origin, record_name};
 use crate::words::section;
 
 /// The page of a plan.
 #[must_use]
 pub fn of_plan(plan: &PlanResult) -> Part {
-    let mut sections = vec![section(
-        "sigmas",
-        "What the run gives",
-        "Runs, standard deviations and what is told apart: of the record so far, and of record and next run together.",
-        tables(plan).into_iter().map(Item::from).collect(),
-    )];
+    let lead = "Runs, standard deviations and what is told apart: of the record so far, and of record and next run \
+                together.";
+    let items = tables(plan).into_iter().map(Item::from).collect();
+    let mut sections = vec![section("sigmas", "What the run gives", lead, items)];
     if !plan.proposals.is_empty() {
-        sections.push(section(
-            "proposals",
-            "Proposals",
-            "The best attitudes of each duration, against continuing in the present one.",
-            vec![Item::Bars(proposals(plan))],
-        ));
+        let lead = "The best attitudes of each duration, against continuing in the present one.";
+        let items = vec![Item::Bars(proposals(plan))];
+        sections.push(section("proposals", "Proposals", lead, items));
     }
-    sections.push(section(
-        "words",
-        "In words",
-        "What is known, the recommended run, and what it is expected to tell.",
-        prose(plan).into_iter().map(Item::Words).collect(),
-    ));
+    let lead = "What is known, the recommended run, and what it is expected to tell.";
+    let items = prose(plan).into_iter().map(Item::Words).collect();
+    sections.push(section("words", "In words", lead, items));
     Part {
-        name: match plan.records.len() {
-            0 => file_name(&plan.manifest, 0, "record"),
-            several => counted(several, "record"),
-        },
+        name: record_name(&plan.manifest, plan.records.len()),
         size: size(plan.record.rows, plan.record.duration_s),
         first: gyrocal_design::first_screen(plan),
         sections,

@@ -5,8 +5,7 @@ use gyrocal_answer::Answer;
 use gyrocal_document::{Bar, BarGroup, Bars, Item, Section, Tint};
 use gyrocal_statistics::format;
 
-use crate::words::listed;
-use crate::words::section as titled;
+use crate::words::{listed, section as titled};
 
 /// Number of effects shown that are neither reported nor alternatives.
 const OTHERS: usize = 10;

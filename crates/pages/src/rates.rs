@@ -43,11 +43,8 @@ fn means(logs: &[Input], report: &RateReport, clocks: &[String]) -> Section {
                 Some(_) => format!("{}, less Earth rate", law.gyro),
                 None => law.gyro.clone(),
             };
-            row(
-                of,
-                log.bias_deg_per_h[gyro],
-                log.bias_half_width_deg_per_h[gyro],
-            )
+            let half_width = log.bias_half_width_deg_per_h[gyro];
+            row(of, log.bias_deg_per_h[gyro], half_width)
         });
         let vertical = log.vertical_deg_per_h.map(|[rate, sigma]| {
             let of = "vertical, Earth rate and bias".to_owned();
@@ -104,10 +101,6 @@ fn of_gyro(gyro: &GyroRates, logs: usize) -> Section {
          deg/h/sqrt(s){between}.",
         noise.random_walk, noise.bias_instability, noise.rate_random_walk
     )));
-    section(
-        &gyro.gyro,
-        &gyro.gyro,
-        "Coefficients, effects and noise.",
-        items,
-    )
+    let lead = "Coefficients, effects and noise.";
+    section(&gyro.gyro, &gyro.gyro, lead, items)
 }

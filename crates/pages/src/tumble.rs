@@ -35,16 +35,10 @@ pub struct TumbleAnswer<'a> {
 #[must_use]
 pub fn of_tumble(answer: &TumbleAnswer<'_>) -> Part {
     let report = &answer.result.test;
-    let mut sections = vec![
-        section(
-            "residual",
-            "Residual at the stops",
-            "Gyro output less drift law at each static stop, before and after the terms that the search added.",
-            vec![Item::Chart(charts::residuals(answer.prepared, report))],
-        ),
-        terms(answer, report),
-        laws(answer, report),
-    ];
+    let lead = "Gyro output less drift law at each static stop, before and after the terms that the search added.";
+    let items = vec![Item::Chart(charts::residuals(answer.prepared, report))];
+    let residual = section("residual", "Residual at the stops", lead, items);
+    let mut sections = vec![residual, terms(answer, report), laws(answer, report)];
     sections.extend(gain(answer, report));
     sections.push(sensors::section_of(answer));
     Part {
@@ -94,13 +88,9 @@ fn terms(answer: &TumbleAnswer<'_>, report: &MultiPositionReport) -> Section {
             report.not_confirmed.join(", ")
         )));
     }
-    section(
-        "terms",
-        "Terms that the nominal law lacks",
-        "Held against the noise that may be between these stops. Gyro output less all other terms of the extended \
-         law, against the regressor of the term: a line through the points is the term.",
-        items,
-    )
+    let lead = "Held against the noise that may be between these stops. Gyro output less all other terms of the \
+                extended law, against the regressor of the term: a line through the points is the term.";
+    section("terms", "Terms that the nominal law lacks", lead, items)
 }
 
 /// What else a term may be.
@@ -171,12 +161,8 @@ fn laws(answer: &TumbleAnswer<'_>, report: &MultiPositionReport) -> Section {
         )));
     }
     items.extend(not_identifiable(answer));
-    section(
-        "laws",
-        "Drift laws",
-        "Coefficients of each gyro in the nominal law and in the one with the terms found.",
-        items,
-    )
+    let lead = "Coefficients of each gyro in the nominal law and in the one with the terms found.";
+    section("laws", "Drift laws", lead, items)
 }
 
 fn fit_row(name: String, fit: &LawReport) -> [String; 7] {
@@ -247,10 +233,6 @@ fn gain(answer: &TumbleAnswer<'_>, report: &MultiPositionReport) -> Option<Secti
             vec![text, again.into()]
         }
     };
-    Some(section(
-        "gain",
-        "Gain on held-out stops",
-        "What the terms do at stops that are held out, and how often the search finds each without these.",
-        items,
-    ))
+    let lead = "What the terms do at stops that are held out, and how often the search finds each without these.";
+    Some(section("gain", "Gain on held-out stops", lead, items))
 }

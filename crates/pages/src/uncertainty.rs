@@ -85,14 +85,10 @@ pub fn of_budget(budget: &RecordUncertainty) -> Section {
             budget.models.len()
         );
     }
-    section(
-        "uncertainty",
-        "Uncertainty",
-        &lead,
-        [results, contributions, conditions(budget)]
-            .map(Item::from)
-            .into(),
-    )
+    let items = [results, contributions, conditions(budget)]
+        .map(Item::from)
+        .into();
+    section("uncertainty", "Uncertainty", &lead, items)
 }
 
 /// The scatter of the coefficients over runs.
@@ -115,14 +111,10 @@ pub fn of_spread(spread: &RunSpread) -> Section {
                    | > expected of the uncertainties | > p | scatter | unit";
     let title = format!("Scatter over {} runs", spread.runs);
     let table = Table::of(&title, heads, rows);
-    section(
-        "spread",
-        "Scatter over runs",
-        "Each record is a run of the same platform. The scatter is larger where noise, attitude and declared \
+    let lead = "Each record is a run of the same platform. The scatter is larger where noise, attitude and declared \
          turn-on scatter do not explain it, by a chi-square test with a false alarm of 1 % for all \
-         coefficients together.",
-        vec![Item::from(table)],
-    )
+         coefficients together.";
+    section("spread", "Scatter over runs", lead, vec![Item::from(table)])
 }
 
 fn result_row(one: &CoefficientUncertainty) -> [String; 8] {
@@ -146,46 +138,31 @@ fn result_row(one: &CoefficientUncertainty) -> [String; 8] {
 /// Conditions of the test.
 fn conditions(budget: &RecordUncertainty) -> Table {
     let of = &budget.conditions;
-    let angles = of
-        .initial_angles_deg
-        .map(|[x, y, z]| format!("{x:.4}°, {y:.4}°, {z:.4}°"));
-    let temperature = of
-        .temperature_c
-        .map(|[low, high]| format!("{low:.2} °C to {high:.2} °C"));
-    let noise = [
-        format!("{:e} g", of.accel_noise_g),
-        format!("{} deg/h", of.gyro_noise_deg_per_h),
-    ];
+    let angles = of.initial_angles_deg.map_or_else(
+        || "not declared".to_owned(),
+        |[x, y, z]| format!("{x:.4}°, {y:.4}°, {z:.4}°"),
+    );
+    let temperature = of.temperature_c.map_or_else(
+        || "not logged".to_owned(),
+        |[low, high]| format!("{low:.2} °C to {high:.2} °C"),
+    );
+    let (accel_g, gyro) = (of.accel_noise_g, of.gyro_noise_deg_per_h);
+    let noise = format!("{accel_g:e} g, {gyro} deg/h");
+    let duration = format!("{:.2} h, {}", of.duration_h, of.rows);
+    let (values, nis) = (budget.accelerometer_values, budget.nis_of_value);
+    let nis = format!("{nis:.3}");
     let force = format!("{} g", of.specific_force_at_rest_g);
     let rows = [
         ("record", budget.name.clone()),
         ("bench", of.bench.clone()),
         ("astronomic latitude", format!("{}°", of.latitude_deg)),
         ("specific force at rest", force),
-        (
-            "duration, rows",
-            format!("{:.2} h, {}", of.duration_h, of.rows),
-        ),
-        (
-            "declared noise of accelerometers, of gyros",
-            noise.join(", "),
-        ),
-        (
-            "accelerometer values",
-            budget.accelerometer_values.to_string(),
-        ),
-        (
-            "innovation squared of a value, normalised: mean",
-            format!("{:.3}", budget.nis_of_value),
-        ),
-        (
-            "initial angles",
-            angles.unwrap_or("not declared".to_owned()),
-        ),
-        (
-            "temperature",
-            temperature.unwrap_or("not logged".to_owned()),
-        ),
+        ("duration, rows", duration),
+        ("declared noise of accelerometers, of gyros", noise),
+        ("accelerometer values", values.to_string()),
+        ("innovation squared of a value, normalised: mean", nis),
+        ("initial angles", angles),
+        ("temperature", temperature),
     ];
     let rows = rows.map(|(name, value)| [name.to_owned(), value]);
     Table::of("Test conditions", "condition | value", rows)

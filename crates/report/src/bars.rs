@@ -59,21 +59,15 @@ fn draw(bars: &Bars, canvas: &mut Canvas, body: Rect) {
     let span = span.unwrap_or(Span { lo: 0.0, hi: 1.0 }).open();
     let axis = Axis::linear(span, &bars.quantity, "", (frame.width() / 70.0) as usize);
     let x_of = |value: f64| frame.left + axis.at(value) * frame.width();
+    let upright = |x: f64| [(x, frame.top), (x, frame.bottom)];
+    let style = TextStyle::new(SMALL, Align::Middle).colour(INK);
     for (value, label) in &axis.ticks {
         let x = x_of(*value);
-        canvas.line(
-            &[(x, frame.top), (x, frame.bottom)],
-            LineStyle::solid(GREY, 0.5 * HAIR),
-        );
-        let style = TextStyle::new(SMALL, Align::Middle).colour(INK);
+        canvas.line(&upright(x), LineStyle::solid(GREY, 0.5 * HAIR));
         canvas.text(label, (x, frame.bottom + 12.0), style);
     }
     let title = (frame.centre().0, frame.bottom + 28.0);
-    canvas.text(
-        &axis.title,
-        title,
-        TextStyle::new(SMALL, Align::Middle).colour(INK),
-    );
+    canvas.text(&axis.title, title, style);
     let mut y = frame.top;
     let mut headings = Vec::new();
     for group in &bars.groups {
@@ -105,9 +99,7 @@ fn draw(bars: &Bars, canvas: &mut Canvas, body: Rect) {
         }
     }
     if let Some(value) = threshold {
-        let x = x_of(value);
-        let style = LineStyle::dashed(LEVEL, THIN);
-        canvas.line(&[(x, frame.top), (x, frame.bottom)], style);
+        canvas.line(&upright(x_of(value)), LineStyle::dashed(LEVEL, THIN));
     }
     for (words, y) in headings {
         // A white ground keeps grid and threshold out of the letters.

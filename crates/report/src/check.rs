@@ -22,22 +22,13 @@ pub(crate) fn column(
 
 /// No value is infinite.
 pub(crate) fn not_infinite(what: impl Fn() -> String, values: &[f64]) -> Result<(), Error> {
-    each(
-        what,
-        values,
-        "a finite number, or nan where there is none",
-        |value| !value.is_infinite(),
-    )
+    let expected = "a finite number, or nan where there is none";
+    each(what, values, expected, |value| !value.is_infinite())
 }
 
 /// Abscissas are finite and never decrease.
 pub(crate) fn non_decreasing(what: &str, values: &[f64]) -> Result<(), Error> {
-    each(
-        || what.to_owned(),
-        values,
-        "a finite number",
-        f64::is_finite,
-    )?;
+    finite(what, values)?;
     match values.windows(2).position(|pair| pair[1] < pair[0]) {
         None => Ok(()),
         Some(index) => Err(Error::Value {
@@ -49,14 +40,10 @@ pub(crate) fn non_decreasing(what: &str, values: &[f64]) -> Result<(), Error> {
     }
 }
 
-/// A single number is finite.
-pub(crate) fn finite(what: &str, value: f64) -> Result<(), Error> {
-    each(
-        || what.to_owned(),
-        &[value],
-        "a finite number",
-        f64::is_finite,
-    )
+/// Numbers are finite.
+pub(crate) fn finite(what: &str, values: &[f64]) -> Result<(), Error> {
+    let what = || what.to_owned();
+    each(what, values, "a finite number", f64::is_finite)
 }
 
 /// A list has an entry.

@@ -47,6 +47,11 @@ fn has_several(report: &CalibrationReport) -> bool {
     report.records.len() > 1
 }
 
+/// The first of two words of a calibration of one record, the second of several.
+fn by_number(report: &CalibrationReport, [one, several]: [&'static str; 2]) -> &'static str {
+    if has_several(report) { several } else { one }
+}
+
 fn record_line(one: &RecordReport) -> String {
     let mut text = format!(
         "{}: {} rows over {:.2} days",
@@ -66,17 +71,14 @@ fn determined(report: &CalibrationReport) -> String {
         let those = all.filter(|one| one.determined == determined);
         joined(those.map(|one| &one.name), ", ")
     };
-    let [records, determine] = match has_several(report) {
-        true => ["records", "determine"],
-        false => ["record", "determines"],
-    };
+    let records = by_number(report, ["record determines", "records determine"]);
     match (&*ids(true), &*ids(false)) {
-        (_, "") => format!("The {records} {determine} all nine coefficients."),
+        (_, "") => format!("The {records} all nine coefficients."),
         ("", _) => format!(
-            "The {records} {determine} none of the coefficients: estimates and sigmas below are mostly those of \
+            "The {records} none of the coefficients: estimates and sigmas below are mostly those of \
              the prior."
         ),
-        (yes, no) => format!("The {records} {determine} {yes}. Not determined: {no}."),
+        (yes, no) => format!("The {records} {yes}. Not determined: {no}."),
     }
 }
 
@@ -259,10 +261,7 @@ fn overlaps(report: &CalibrationReport) -> Vec<String> {
 }
 
 fn final_angles(report: &CalibrationReport) -> String {
-    let of = match has_several(report) {
-        true => " of the last record",
-        false => "",
-    };
+    let of = by_number(report, ["", " of the last record"]);
     report.final_angles_deg.map_or_else(String::new, |[x, y, z]| {
         format!(
             "Platform angles against east, north, up at the last row{of}: {x:.4}, {y:.4}, {z:.4} deg about x, y, z."

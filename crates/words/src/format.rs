@@ -9,6 +9,14 @@ pub(crate) fn with_sigma(estimate: f64, sigma: f64) -> String {
     format!("{estimate} ± {sigma}")
 }
 
+/// A unit behind a value, with a blank between them; `1` is no unit.
+pub(crate) fn behind(unit: &str) -> String {
+    match unit {
+        "" | "1" => String::new(),
+        unit => format!(" {unit}"),
+    }
+}
+
 /// A number with four digits at most.
 pub(crate) fn short(value: f64) -> String {
     format::short(value, 4)

@@ -10,13 +10,13 @@ pub use path::{path, why};
 
 use crate::diagnosis::likelihood;
 use crate::files::joined;
-use crate::format::tested;
+use crate::format::{behind, tested, with_sigma};
 use gyrocal_answer::{
     AlternativeKind, Answer, Finding, Gain, NextRun, NullDirection, NullPart, OutputError,
     OutputTest, Parameter, RecordResult, RecordSummary, Subject, UnmodelledTerm, Verdict,
 };
 use gyrocal_document::{Screen, Standing};
-use gyrocal_statistics::format::{estimate, p_value, significant};
+use gyrocal_statistics::format::{p_value, significant};
 use gyrocal_statistics::math::{exp, ln};
 
 /// Gain on a later record, nats, below which nothing is said of it.
@@ -195,13 +195,11 @@ pub fn finding(answer: &Answer, found: &Finding) -> String {
 /// A size or an onset: name, value, standard deviation and unit.
 #[must_use]
 pub fn parameter(one: &Parameter) -> String {
-    let unit = if one.unit == "1" { "" } else { &one.unit };
     let value = match one.sigma {
-        Some(sigma) => estimate(one.estimate, sigma).join(" ± "),
+        Some(sigma) => with_sigma(one.estimate, sigma),
         None => significant(one.estimate, 4),
     };
-    let text = format!("{} {value} {unit}", one.name);
-    text.trim_end().to_owned()
+    format!("{} {value}{}", one.name, behind(&one.unit))
 }
 
 /// A term outside of the catalogue.

@@ -37,10 +37,8 @@ pub(super) fn first(arguments: &StrapdownArguments, report: &ImportReport) -> Sc
 
 /// Heading, disturbed rows, noise, and what a static log does not tell.
 fn record(arguments: &StrapdownArguments, report: &ImportReport, screen: &mut Screen) {
-    screen.fact(
-        "heading",
-        format!("body y points {:.3} deg from north", report.heading_deg),
-    );
+    let words = format!("body y points {:.3} deg from north", report.heading_deg);
+    screen.fact("heading", words);
     let words = format!(
         "{:.0} s in {} windows, {}",
         disturbed_s(report),
@@ -57,10 +55,8 @@ fn record(arguments: &StrapdownArguments, report: &ImportReport, screen: &mut Sc
         report.accel_noise_g, report.gyro_noise_deg_per_h
     );
     screen.fact("noise", words);
-    screen.fact(
-        "not told",
-        "bias from terms in specific force; drift toward east from the heading",
-    );
+    let words = "bias from terms in specific force; drift toward east from the heading";
+    screen.fact("not told", words);
 }
 
 /// The calibration of what was written.

@@ -68,10 +68,8 @@ fn propose(log: &Path, map: &Path) -> Result<Reply, Failure> {
         record.duration_s()
     );
     let mut screen = Screen::new(Standing::Good, "MAP PROPOSED", what);
-    screen.fact(
-        "what to do",
-        "check units, signs and the order of axes in it",
-    );
+    let words = "check units, signs and the order of axes in it";
+    screen.fact("what to do", words);
     let [log, map_words] = [log, map].map(|path| shell_quoted(&path.display().to_string()));
     let command = format!("gyrocal diagnose {log} --columns {map_words} --bench BENCH.toml");
     screen.then(command, "effects in the record");
@@ -159,13 +157,8 @@ fn read(arguments: &TableArguments) -> Result<(Vec<Record>, usize), Failure> {
     let parts = restarts(&file.record().time_s).filter(|_| arguments.split);
     let record = match parts {
         Some(parts) => {
-            return Ok((
-                parts
-                    .into_iter()
-                    .map(|rows| file.record().part(rows))
-                    .collect(),
-                rows,
-            ));
+            let parts = parts.into_iter().map(|rows| file.record().part(rows));
+            return Ok((parts.collect(), rows));
         }
         None => RecordFile::into_rising(file)?,
     };

@@ -3,8 +3,9 @@
 use std::time::Duration;
 
 use gyrocal_evaluation::Progress;
-use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget};
 
+use crate::progress::style;
 use crate::terminal;
 
 /// A bar with the time left, if stderr is a terminal; it goes when it is dropped.
@@ -26,8 +27,7 @@ impl SeedProgress {
         } else {
             ProgressBar::hidden()
         };
-        let style = ProgressStyle::with_template("{pos} of {len} runs {wide_bar} {msg}");
-        let bar = bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        let bar = bar.with_style(style("{pos} of {len} runs {wide_bar} {msg}"));
         let of = match name {
             "" => String::new(),
             name => format!("{name}, "),

@@ -15,27 +15,6 @@ pub struct NotPlanned {
     source: DesignError,
 }
 
-/// A diagnosis is of another record, or was made with another bench file.
-#[derive(Debug, thiserror::Error)]
-#[error(
-    "{diagnosis}: a diagnosis {other}; that has SHA-256 {found}, expected {expected}, that of {given}"
-)]
-pub(super) struct OtherInput {
-    pub(super) diagnosis: String,
-    /// The input that differs.
-    pub(super) other: &'static str,
-    pub(super) given: String,
-    pub(super) found: String,
-    pub(super) expected: String,
-}
-
-impl OtherInput {
-    fn advice(&self) -> &'static str {
-        "diagnose these records with these bench files, in this order, or leave --diagnosis out: the command then \
-         diagnoses them"
-    }
-}
-
 impl NotPlanned {
     /// The failure of a plan for records.
     #[must_use]
@@ -68,5 +47,4 @@ impl NotPlanned {
 
 advised! {
     NotPlanned, "gyrocal::plan";
-    OtherInput, "gyrocal::plan";
 }

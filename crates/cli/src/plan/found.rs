@@ -8,9 +8,10 @@ use gyrocal_design::{Known, NotKnown};
 use gyrocal_diagnosis::{DiagnoseOptions, RecordToDiagnose, diagnose_together, diagnose_watched};
 use gyrocal_record::{Bench, Input, RecordFile, printable_path};
 use gyrocal_words::counted;
+use miette::miette;
 
 use super::PlanArguments;
-use super::failed::{NotPlanned, OtherInput};
+use super::failed::NotPlanned;
 use crate::Failure;
 use crate::diagnose::NotDiagnosed;
 use crate::progress::Progress;
@@ -97,14 +98,15 @@ fn check_inputs(path: &Path, diagnosis: &Answer, arguments: &PlanArguments) -> R
     for (given, other, found) in pairs.chain(axes) {
         let expected = Input::of(given)?.sha256;
         if found.is_none_or(|input| input.sha256 != expected) {
-            return Err(OtherInput {
-                diagnosis: printable_path(path),
-                other,
-                given: printable_path(given),
-                found: found.map_or_else(|| "none".to_owned(), |input| input.sha256.clone()),
-                expected,
-            }
-            .into());
+            return Err(Failure::Work(miette!(
+                code = "gyrocal::plan",
+                help = "diagnose these records with these bench files, in this order, or leave --diagnosis out: the \
+                        command then diagnoses them",
+                "{}: a diagnosis {other}; that has SHA-256 {}, expected {expected}, that of {}",
+                printable_path(path),
+                found.map_or("none", |input| &input.sha256),
+                printable_path(given),
+            )));
         }
     }
     Ok(())

@@ -1,11 +1,11 @@
 //! `gyrocal plant derive`: the program of a plant from its Python script.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use gyrocal_document::{Screen, Standing};
 use gyrocal_plant::LoadedPlant;
-use gyrocal_plant_codegen::{derive, settings_of_a_command};
+use gyrocal_plant_codegen::{DerivedPlant, derive, settings_of_a_command};
 use gyrocal_record::printable_path;
 use gyrocal_words::counted;
 
@@ -26,31 +26,31 @@ pub(super) struct DeriveArguments {
     out: Option<PathBuf>,
 }
 
+/// The plant that a script declares, with its program.
+pub(super) fn derived(script: &Path) -> Result<(LoadedPlant, DerivedPlant), Failure> {
+    let _progress = Progress::waiting("deriving", 1);
+    let derived = derive(script, settings_of_a_command())?;
+    let plant = LoadedPlant::parse(&derived.program, &printable_path(script))?;
+    Ok((plant, derived))
+}
+
 /// Runs the command; returns its answer.
 pub(super) fn run(arguments: &DeriveArguments) -> Result<Reply, Failure> {
     let beside = arguments.script.with_extension("json");
     let out = arguments.out.as_deref().unwrap_or(&beside);
     refuse_overlap(&[&arguments.script], &[("--out", Some(out))])?;
-    let progress = Progress::waiting("deriving", 1);
-    let derived = derive(&arguments.script, settings_of_a_command())?;
-    drop(progress);
-    let plant = LoadedPlant::parse(&derived.program, &printable_path(&arguments.script))?;
+    let (plant, derived) = derived(&arguments.script)?;
     let description = plant.description();
-    let mut screen = Screen::new(
-        Standing::Good,
-        "PROGRAM",
-        format!(
-            "{} has {}, {}, {} and {} in its catalogue",
-            description.name,
-            counted(description.states.len(), "state"),
-            counted(description.parameters.len(), "parameter"),
-            counted(description.outputs.len(), "output"),
-            counted(description.effects.len(), "effect"),
-        ),
+    let what = format!(
+        "{} has {}, {}, {} and {} in its catalogue",
+        description.name,
+        counted(description.states.len(), "state"),
+        counted(description.parameters.len(), "parameter"),
+        counted(description.outputs.len(), "output"),
+        counted(description.effects.len(), "effect"),
     );
-    for line in derived.left_out {
-        screen.fact("left out", line);
-    }
+    let mut screen = Screen::new(Standing::Good, "PROGRAM", what);
+    screen.each("left out", derived.left_out);
     let mut shown = Reply::of(screen, String::new());
     let what = "the program, for `gyrocal plant diagnose`";
     shown.write(Some(out), what, |_| Ok(derived.program))?;

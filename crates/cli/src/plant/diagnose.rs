@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use gyrocal_pages::{Part, of_plant, of_result, pictures};
+use gyrocal_plant::description::Description;
 use gyrocal_plant::{
     ColumnMap, DiagnosedRecords, LoadedPlant, NamedRecord, PlantError, SearchOptions,
     diagnose_records,
@@ -55,12 +56,14 @@ pub(super) fn run(
     let inputs = checked_inputs(file, arguments)?;
     let plant = plant()?;
     let columns = ColumnMap::read(&arguments.columns)?;
-    let records = arguments.records.iter();
-    let records = records.map(|path| columns.named_record(plant.description(), path));
-    let records: Vec<NamedRecord> = records.collect::<Result<_, PlantError>>()?;
-    let next = arguments.next.iter();
-    let next = next.map(|path| columns.named_run(plant.description(), path));
-    let next: Vec<NamedRecord> = next.collect::<Result<_, PlantError>>()?;
+    let all = |paths: &[PathBuf], read: fn(&ColumnMap, &Description, &Path) -> _| {
+        let read = paths
+            .iter()
+            .map(|path| read(&columns, plant.description(), path));
+        read.collect::<Result<Vec<NamedRecord>, PlantError>>()
+    };
+    let records = all(&arguments.records, ColumnMap::named_record)?;
+    let next = all(&arguments.next, ColumnMap::named_run)?;
     let later = match &arguments.validate {
         Some(path) => {
             let own = arguments.validate_columns.as_deref().map(ColumnMap::read);
@@ -132,10 +135,7 @@ fn checked_inputs<'a>(
     inputs.extend(arguments.next.iter().map(PathBuf::as_path));
     let json = arguments.json.as_deref();
     arguments.views.check(&inputs, json, &[])?;
-    refuse_itself(
-        "--validate",
-        arguments.validate.as_deref(),
-        &arguments.records,
-    )?;
+    let later = arguments.validate.as_deref();
+    refuse_itself("--validate", later, &arguments.records)?;
     Ok(inputs)
 }

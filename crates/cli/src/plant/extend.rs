@@ -5,11 +5,10 @@ use std::path::PathBuf;
 use clap::Args;
 use gyrocal_answer::{Answer, Subject, read_text};
 use gyrocal_document::{Screen, Standing};
-use gyrocal_plant::{Extension, LoadedPlant};
-use gyrocal_plant_codegen::{derive, settings_of_a_command};
+use gyrocal_plant::Extension;
 use gyrocal_record::{Error, InputErrorKind, SourceText, printable_path};
 
-use crate::progress::Progress;
+use super::derive::derived;
 use crate::{Failure, Reply};
 
 /// Write what a diagnosis found into the equations of the plant's Python script.
@@ -31,14 +30,10 @@ pub(super) fn run(arguments: &ExtendArguments) -> Result<Reply, Failure> {
     let source = SourceText::read(&arguments.diagnosis)?;
     let answer = read_text(&source)?;
     let script = SourceText::read(&arguments.script)?;
-    let origin = printable_path(&arguments.script);
-    let progress = Progress::waiting("deriving", 1);
-    let derived = derive(&arguments.script, settings_of_a_command())?;
-    drop(progress);
-    let plant = LoadedPlant::parse(&derived.program, &origin)?;
+    let (plant, _) = derived(&arguments.script)?;
     refuse_another(&source, &answer, &plant.description().name)?;
     let extension = Extension::of(&plant, &answer);
-    let extended = extension.script(script.text(), &origin)?;
+    let extended = extension.script(script.text(), &printable_path(&arguments.script))?;
     let mut shown = Reply::of(screen(&answer, &extension), String::new());
     let what = "the equations; derive or build them again";
     shown.write(Some(&arguments.script), what, |_| Ok(extended))?;
@@ -82,8 +77,10 @@ fn screen(answer: &Answer, extension: &Extension) -> Screen {
     if !answer.is_settled() {
         screen.fact("not settled", gyrocal_words::plant::verdict(answer));
     }
-    for (effect, why) in &extension.left_out {
-        screen.fact("left out", format!("{effect} {why}"));
-    }
+    let left_out = extension.left_out.iter();
+    screen.each(
+        "left out",
+        left_out.map(|(effect, why)| format!("{effect} {why}")),
+    );
     screen
 }

@@ -42,11 +42,8 @@ pub(crate) fn run(arguments: &NewPlantArguments) -> Result<Reply, Failure> {
         Source::Path(path) => format!("gyrocal of {}, by its path", printable_path(path)),
         Source::Version(version) => format!("the published gyrocal {version}, exactly"),
     };
-    let mut screen = Screen::new(
-        Standing::Good,
-        "NEW PACKAGE",
-        format!("{name} has a plant to begin with and a command to diagnose it."),
-    );
+    let what = format!("{name} has a plant to begin with and a command to diagnose it.");
+    let mut screen = Screen::new(Standing::Good, "NEW PACKAGE", what);
     screen.fact("built with", from);
     let words = format!(
         "cd {} && cargo run -- diagnose data.csv --columns columns.toml",

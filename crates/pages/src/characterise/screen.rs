@@ -33,10 +33,8 @@ pub(super) fn first(reports: &[CellReport]) -> Screen {
             some => format!(" ({some})"),
         };
         let (measured, target) = (measured(one), target(one));
-        screen.fact(
-            &report.title,
-            format!("{}: {measured}{interval}, target {target}", one.figure),
-        );
+        let words = format!("{}: {measured}{interval}, target {target}", one.figure);
+        screen.fact(&report.title, words);
     }
     screen
 }

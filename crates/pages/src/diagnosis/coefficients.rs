@@ -11,8 +11,7 @@ use gyrocal_record::Record;
 use super::accepted;
 use crate::error::PageError;
 use crate::panels::{EXTENDED, NOMINAL, line, two_sigmas};
-use crate::words::listed;
-use crate::words::section as titled;
+use crate::words::{listed, section as titled};
 
 /// A change of a coefficient from which on it is marked, in claimed sigmas.
 const NOTABLE: f64 = 2.0;
@@ -53,12 +52,8 @@ pub(super) fn section(result: &Answer, convergence: Option<Chart>) -> Option<Sec
     })];
     items.extend(convergence.map(Item::Chart));
     items.extend(gyrocal_words::over_sets(all).map(Item::from));
-    Some(titled(
-        "coefficients",
-        "Coefficients",
-        "The nine drift coefficients with their standard deviations.",
-        items,
-    ))
+    let lead = "The nine drift coefficients with their standard deviations.";
+    Some(titled("coefficients", "Coefficients", lead, items))
 }
 
 /// Estimates against record length; `None` of a record without a second row.
@@ -148,17 +143,15 @@ pub(crate) fn site(fit: &FittedPlatform<'_>) -> Result<Section, PageError> {
         }
         row
     });
-    Ok(titled(
-        "site",
-        "Site",
-        "Sensitivity to the site: bias of each coefficient by an error of it, in its unit and in standard deviations σ of the \
-         estimate. Errors that the bench file declares count in those standard deviations already.",
-        vec![Item::from(Table {
-            title: "Biases by errors of the site".to_owned(),
-            columns,
-            rows: rows.collect(),
-        })],
-    ))
+    let lead = "Sensitivity to the site: bias of each coefficient by an error of it, in its unit and in standard \
+                deviations σ of the estimate. Errors that the bench file declares count in those standard deviations \
+                already.";
+    let items = vec![Item::from(Table {
+        title: "Biases by errors of the site".to_owned(),
+        columns,
+        rows: rows.collect(),
+    })];
+    Ok(titled("site", "Site", lead, items))
 }
 
 /// Name and size of an error of the site.

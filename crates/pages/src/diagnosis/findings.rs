@@ -23,13 +23,10 @@ pub(super) fn findings(result: &Answer) -> Option<Section> {
         format!("{}: {}{sizes}{coverage}", finding.effect, finding.name)
     });
     let names = List::of("What they are", names).map(Item::from);
-    Some(section(
-        "findings",
-        "Findings",
-        "Effects that the record shows, with size, significance and gain of the predictive log score. One that does \
-         not gain is not in the extended model.",
-        [Item::from(table)].into_iter().chain(names).collect(),
-    ))
+    let lead = "Effects that the record shows, with size, significance and gain of the predictive log score. One that \
+                does not gain is not in the extended model.";
+    let items = [Item::from(table)].into_iter().chain(names).collect();
+    Some(section("findings", "Findings", lead, items))
 }
 
 /// Each record of several; `None` of one.

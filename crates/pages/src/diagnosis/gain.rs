@@ -5,8 +5,7 @@ use gyrocal_diagnosis::LaterPrediction;
 use gyrocal_document::{Chart, Item, Level, Line, LineKind, Panel, Section, Table, TimeAxis, Tint};
 
 use crate::panels::{EXTENDED, NOMINAL, line};
-use crate::words::section as titled;
-use crate::words::{listed, micro_g};
+use crate::words::{listed, micro_g, section as titled};
 
 /// `None` without a cause and a later record.
 pub(super) fn section(result: &Answer, later: Option<&LaterPrediction>) -> Option<Section> {
@@ -26,12 +25,8 @@ pub(super) fn section(result: &Answer, later: Option<&LaterPrediction>) -> Optio
     if items.is_empty() {
         return None;
     }
-    Some(titled(
-        "gain",
-        "Gain",
-        "What the extended model predicts better than the nominal one, in data that it was not fitted to.",
-        items,
-    ))
+    let lead = "What the extended model predicts better than the nominal one, in data that it was not fitted to.";
+    Some(titled("gain", "Gain", lead, items))
 }
 
 /// The outcome of cross-validation.

@@ -8,8 +8,7 @@ use gyrocal_statistics::format;
 use gyrocal_words::counted;
 
 use crate::unlisted::unlisted;
-use crate::words::listed;
-use crate::words::section;
+use crate::words::{listed, section};
 
 pub(super) fn cannot_tell(result: &Answer) -> Section {
     let groups = gyrocal_words::groups(result).into_iter();
@@ -32,13 +31,9 @@ pub(super) fn cannot_tell(result: &Answer) -> Section {
     items.extend(alternatives(result).map(Item::from));
     items.extend(unlisted(result));
     items.extend(undetected(result));
-    section(
-        "limits",
-        "What cannot be told apart",
-        "Effects of one group explain this record equally well, or nearly so. Others were not tested, or would not \
-         show.",
-        items,
-    )
+    let lead = "Effects of one group explain this record equally well, or nearly so. Others were not tested, or would \
+                not show.";
+    section("limits", "What cannot be told apart", lead, items)
 }
 
 /// What each reported effect may also be.
@@ -141,14 +136,10 @@ pub(super) fn next_run(result: &Answer) -> Section {
                 .to_owned(),
         ));
     }
-    section(
-        "next",
-        "Next run",
-        if result.is_strapdown() {
-            "The log that tells most, of the unit at rest in another attitude."
-        } else {
-            "The run that tells most, within the limits of the gimbals."
-        },
-        items,
-    )
+    let lead = if result.is_strapdown() {
+        "The log that tells most, of the unit at rest in another attitude."
+    } else {
+        "The run that tells most, within the limits of the gimbals."
+    };
+    section("next", "Next run", lead, items)
 }

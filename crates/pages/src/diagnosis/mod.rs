@@ -14,7 +14,7 @@ use gyrocal_diagnosis::Diagnosis;
 use gyrocal_document::{Item, Part, Section};
 
 use crate::error::PageError;
-use crate::origin::{file_name, origin};
+use crate::origin::{origin, record_name};
 use open_loop::Simulated;
 
 /// The page of a diagnosis with its fits.
@@ -60,10 +60,7 @@ pub(crate) fn of_platform(result: &Answer) -> Part {
 
 fn part(result: &Answer, sections: Vec<Section>) -> Part {
     Part {
-        name: match result.records.len() {
-            0 => file_name(&result.manifest, 0, "record"),
-            several => gyrocal_words::counted(several, "record"),
-        },
+        name: record_name(&result.manifest, result.records.len()),
         size: gyrocal_words::size(result.record.rows, result.record.duration_s),
         first: gyrocal_words::first_screen(result),
         sections,

@@ -2,7 +2,7 @@
 
 use gyrocal_calibration::FittedPlatform;
 use gyrocal_diagnosis::OpenLoopSimulation;
-use gyrocal_document::{Chart, Item, Panel, Section, TimeAxis};
+use gyrocal_document::{Chart, Panel, Section, TimeAxis};
 use gyrocal_record::{AXES, Bench, Record};
 use gyrocal_statistics::NORMAL_97_5;
 use gyrocal_words::counted;
@@ -10,7 +10,6 @@ use gyrocal_words::counted;
 use super::covariates;
 use crate::error::PageError;
 use crate::panels;
-use crate::words::section;
 use crate::words::{listed, micro_g};
 
 /// The fits of a record whose simulations are shown.
@@ -38,26 +37,14 @@ pub(crate) fn sections(of: &Simulated<'_, '_>) -> Result<[Section; 2], PageError
     let chart = simulations(&time, measured, &nominal, extended.as_ref());
     let left = residuals(of, (&time, &sigma_g), &nominal, extended.as_ref());
     let against_force = covariates::against_force(of.record, &nominal);
-    Ok([
-        section(
-            "simulation",
-            "Simulation against measurement",
-            "The platform simulated from its first attitude on, without measurement updates, and what the \
-             accelerometers measured.",
-            vec![Item::Chart(chart)],
-        ),
-        section(
-            "residual",
-            "Open-loop residual",
-            "Measured less simulated. A right model stays within the band, which holds the noise of the \
-             accelerometers and what the noise of the gyros adds with time.",
-            [left]
-                .into_iter()
-                .chain(against_force)
-                .map(Item::Chart)
-                .collect(),
-        ),
-    ])
+    let leads = [
+        "The platform simulated from its first attitude on, without measurement updates, and what the \
+         accelerometers measured.",
+        "Measured less simulated. A right model stays within the band, which holds the noise of the \
+         accelerometers and what the noise of the gyros adds with time.",
+    ];
+    let residuals = [left].into_iter().chain(against_force);
+    Ok(panels::sections(leads, [vec![chart], residuals.collect()]))
 }
 
 fn simulations(

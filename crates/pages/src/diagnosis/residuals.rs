@@ -20,12 +20,8 @@ pub(super) fn section(result: &Answer, charts: Vec<Chart>) -> Section {
     let mut items = vec![Item::from(test_table::table(result))];
     items.extend(charts.into_iter().map(Item::Chart));
     items.extend(gyrocal_words::residuals(result).map(Item::from));
-    titled(
-        "residuals",
-        "Innovations",
-        "One-step innovations of a right model are white: no correlation over rows, no line in the spectrum.",
-        items,
-    )
+    let lead = "One-step innovations of a right model are white: no correlation over rows, no line in the spectrum.";
+    titled("residuals", "Innovations", lead, items)
 }
 
 /// The charts that the record is long enough for.

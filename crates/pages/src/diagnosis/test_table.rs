@@ -47,7 +47,7 @@ fn line_of(period_h: f64, amplitude: f64, duration_h: f64) -> String {
 
 fn of_nominal(residuals: &Residuals, duration_h: f64) -> Vec<Test> {
     let mut tests = Vec::new();
-    let mut add = |name: String, found, p| tests.push(("nominal", name, found, Some(p)));
+    let mut add = |name: &str, found, p| tests.push(("nominal", name.to_owned(), found, Some(p)));
     if let Some(nis) = &residuals.nis {
         let [low, high] = nis.band;
         let found = format!(
@@ -56,23 +56,16 @@ fn of_nominal(residuals: &Residuals, duration_h: f64) -> Vec<Test> {
             counted(nis.values, "value"),
             counted(nis.rows, "row")
         );
-        add(
-            "mean normalised innovation squared".to_owned(),
-            found,
-            nis.p_value,
-        );
+        add("mean normalised innovation squared", found, nis.p_value);
     }
     if let Some(all) = &residuals.autocorrelation {
         let found = ljung_box(all.ljung_box, all.degrees_of_freedom);
-        add(LJUNG_BOX.to_owned(), found, all.p_value);
+        add(LJUNG_BOX, found, all.p_value);
     }
     for (line, axis) in residuals.lines.iter().flatten().zip(AXES) {
         let found = line_of(line.period_h, line.amplitude, duration_h);
-        add(
-            format!("largest spectral line, axis {axis}"),
-            found,
-            line.p_value,
-        );
+        let name = format!("largest spectral line, axis {axis}");
+        add(&name, found, line.p_value);
     }
     tests
 }
@@ -214,11 +207,8 @@ fn of_accelerometers(result: &Answer) -> Vec<Test> {
     }
     if gaps.missing_values > 0.0 {
         let share = short(100.0 * gaps.missing_values, 4);
-        add(
-            "missing values",
-            format!("{share} % of the values missing"),
-            None,
-        );
+        let found = format!("{share} % of the values missing");
+        add("missing values", found, None);
     }
     tests
 }

@@ -79,12 +79,8 @@ fn simulations(fit: &PlantFit) -> Section {
     let (over, free) = (format::short(fit.horizon_s, 4), fit.first_rows);
     let lead =
         format!("In open loop over {over} s. The first {free} rows of a record do not count.");
-    section(
-        "simulations",
-        "Simulations",
-        &lead,
-        vec![Table::of("", heads, rows).into()],
-    )
+    let items = vec![Table::of("", heads, rows).into()];
+    section("simulations", "Simulations", &lead, items)
 }
 
 /// A row for each output of each plant.

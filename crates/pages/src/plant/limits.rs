@@ -40,10 +40,6 @@ pub(super) fn cannot_tell(answer: &Answer) -> Section {
         items.push(Item::text(all.to_owned()));
     }
     items.extend(unlisted(answer));
-    section(
-        "cannot-tell",
-        "What cannot be told apart",
-        "Directions of parameters and initial states without information, and effects that these take up.",
-        items,
-    )
+    let lead = "Directions of parameters and initial states without information, and effects that these take up.";
+    section("cannot-tell", "What cannot be told apart", lead, items)
 }

@@ -15,7 +15,7 @@ use gyrocal_statistics::format;
 use gyrocal_words::counted;
 
 use crate::error::PageError;
-use crate::origin::{file_name, origin};
+use crate::origin::{origin, record_name};
 use crate::ranked;
 
 /// The page of a diagnosis of a plant; `name` is that of its record.
@@ -49,10 +49,7 @@ pub(crate) fn of_answer(answer: &Answer) -> Part {
     let mut sections: Vec<Section> = of_tables(answer, None).collect();
     sections.push(over_time::tested(answer, None));
     sections.push(limits::cannot_tell(answer));
-    let name = match answer.records.len() {
-        0 => file_name(&answer.manifest, 0, "record"),
-        several => counted(several, "record"),
-    };
+    let name = record_name(&answer.manifest, answer.records.len());
     part(answer, &name, &answer.manifest, sections)
 }
 

@@ -20,12 +20,12 @@ pub(super) fn sections(diagnosed: &Diagnosed) -> [Section; 2] {
     let names = record_names(answer);
     let series = diagnosed.series();
     let simulations = names.iter().zip(&series);
-    let simulations = simulations.map(|(name, one)| Item::Chart(simulation(name, one)));
+    let simulations = simulations.map(|(name, one)| simulation(name, one));
     let whole = diagnosed.is_simulated_whole();
-    let residuals = names.iter().zip(&series).map(|(name, one)| {
-        let title = of_record(name, &errors(answer));
-        Item::Chart(residual(title, one, whole))
-    });
+    let residuals = names
+        .iter()
+        .zip(&series)
+        .map(|(name, one)| residual(of_record(name, &errors(answer)), one, whole));
     let begins = if whole {
         "The plant simulated from the first row of each record on, with its inputs and without updates, and \
          what its sensors measured."
@@ -41,20 +41,8 @@ pub(super) fn sections(diagnosed: &Diagnosed) -> [Section; 2] {
     } else {
         "Measured less simulated. The band holds the noise of the sensor; noise of the rates comes on top of it."
     };
-    [
-        section(
-            "simulation",
-            "Simulation against measurement",
-            &begins,
-            simulations.collect(),
-        ),
-        section(
-            "residual",
-            "Open-loop residual",
-            residual_lead,
-            residuals.collect(),
-        ),
-    ]
+    let charts = [simulations.collect(), residuals.collect()];
+    panels::sections([&begins, residual_lead], charts)
 }
 
 /// Errors of all outputs in a title.
@@ -157,12 +145,8 @@ pub(super) fn tested(answer: &Answer, chart: Option<Chart>) -> Section {
     let tests = tests(title, &answer.noise, &answer.remainder.outputs);
     let mut items = vec![Item::from(tests)];
     items.extend(chart.map(Item::Chart));
-    section(
-        "residuals",
-        "Innovations",
-        "One-step innovations of a right model are white: no correlation over rows.",
-        items,
-    )
+    let lead = "One-step innovations of a right model are white: no correlation over rows.";
+    section("residuals", "Innovations", lead, items)
 }
 
 fn correlations(found: &[OutputCorrelation]) -> Chart {

@@ -21,12 +21,8 @@ pub(super) fn sets(answer: &Answer) -> Option<Section> {
         .collect();
     let unmodelled = answer.remainder.unmodelled.iter();
     items.extend(unmodelled.map(|one| Item::text(gyrocal_words::plant::unmodelled(one))));
-    Some(section(
-        "sets",
-        "Sets",
-        "The set is the result, not the first name: each effect of it explains the record about as well.",
-        items,
-    ))
+    let lead = "The set is the result, not the first name: each effect of it explains the record about as well.";
+    Some(section("sets", "Sets", lead, items))
 }
 
 /// The way from the nominal model to that with all findings; `None` where the likelihood judged alone.
@@ -97,15 +93,12 @@ fn set(answer: &Answer, found: &Finding) -> Table {
 /// Parameters, and initial states of a record that is alone; `None` without a fit.
 pub(super) fn parameters(answer: &Answer) -> Option<Section> {
     let all = answer.coefficients.as_ref()?;
-    Some(section(
-        "parameters",
-        "Parameters",
-        "Estimates with their standard deviations.",
-        vec![Item::Estimates(estimates(
-            "Parameters of the nominal model and with all findings",
-            all,
-        ))],
-    ))
+    let lead = "Estimates with their standard deviations.";
+    let items = vec![Item::Estimates(estimates(
+        "Parameters of the nominal model and with all findings",
+        all,
+    ))];
+    Some(section("parameters", "Parameters", lead, items))
 }
 
 pub(super) fn estimates(title: &str, all: &Coefficients) -> Estimates {
@@ -155,12 +148,9 @@ pub(super) fn records(answer: &Answer) -> Option<Section> {
         let initial = one.initial.iter();
         items.extend(initial.map(|all| Item::Estimates(estimates(&title, all))));
     }
-    Some(section(
-        "records",
-        "Records",
-        "Parameters and effects are those of all records together, initial states those of each.",
-        items,
-    ))
+    let lead =
+        "Parameters and effects are those of all records together, initial states those of each.";
+    Some(section("records", "Records", lead, items))
 }
 
 fn error_table(title: &str, errors: &[OutputError], has_findings: bool) -> Table {
@@ -219,10 +209,6 @@ pub(super) fn gain(answer: &Answer, diagnosed: Option<&Diagnosed>) -> Option<Sec
                 .to_owned(),
         )),
     }
-    Some(section(
-        "gain",
-        "Gain",
-        "What the extended model predicts better than the nominal one.",
-        items,
-    ))
+    let lead = "What the extended model predicts better than the nominal one.";
+    Some(section("gain", "Gain", lead, items))
 }

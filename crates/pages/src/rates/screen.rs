@@ -20,16 +20,14 @@ const NAMES_SHOWN: usize = 3;
 pub(super) fn first(logs: &[Input], report: &RateReport) -> Screen {
     let found: Vec<_> = report.gyros.iter().flat_map(GyroRates::effects).collect();
     let mut screen = match found.len() {
-        0 => Screen::new(
-            Standing::Good,
-            "RATES",
-            "no significant effect in temperature or time",
-        ),
-        count => Screen::new(
-            Standing::Doubtful,
-            "RATES CHANGE",
-            format!("{} in temperature or time", counted(count, "effect")),
-        ),
+        0 => {
+            let what = "no significant effect in temperature or time";
+            Screen::new(Standing::Good, "RATES", what)
+        }
+        count => {
+            let what = format!("{} in temperature or time", counted(count, "effect"));
+            Screen::new(Standing::Doubtful, "RATES CHANGE", what)
+        }
     };
     if report.earth_is_reversed {
         screen = against_the_earth();

@@ -94,10 +94,8 @@ fn verdict(terms: &[Finding]) -> Screen {
         };
         let estimate = format::with_sigma(one.estimate, one.sigma);
         let p = format::p_value(one.p_value);
-        screen.fact(
-            &one.effect,
-            format!("{estimate} {}, {p}; {others}", one.unit),
-        );
+        let words = format!("{estimate} {}, {p}; {others}", one.unit);
+        screen.fact(&one.effect, words);
     }
     if terms.len() > TERMS_SHOWN {
         screen.fact("and", format!("{} more", terms.len() - TERMS_SHOWN));
@@ -151,13 +149,11 @@ fn law(report: &MultiPositionReport) -> Screen {
         screen.fact("between stops", words);
     } else {
         let left = counted(report.freedom_of_noise, "degree");
-        screen.fact(
-            "not tested",
-            format!(
-                "{left} of freedom tell the noise between stops, a test needs six: repeat positions, each repeat \
-                 gives one to each gyro"
-            ),
+        let words = format!(
+            "{left} of freedom tell the noise between stops, a test needs six: repeat positions, each repeat gives \
+             one to each gyro"
         );
+        screen.fact("not tested", words);
     }
     screen
 }

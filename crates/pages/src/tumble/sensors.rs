@@ -68,12 +68,8 @@ pub(super) fn section_of(answer: &TumbleAnswer<'_>) -> Section {
     });
     let heads = "> from, s | > to, s | > force x, y, z, g | > rate x, y, z, deg/h";
     items.push(Table::of("Stops", heads, rows).into());
-    section(
-        "stops",
-        "Stops and sensors",
-        "What the stops and the turns between them tell of the instruments.",
-        items,
-    )
+    let lead = "What the stops and the turns between them tell of the instruments.";
+    section("stops", "Stops and sensors", lead, items)
 }
 
 fn accelerometers(items: &mut Vec<Item>, errors: &AccelErrors) {

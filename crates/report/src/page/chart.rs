@@ -22,10 +22,10 @@ pub(crate) fn check(chart: &Chart) -> Result<(), Error> {
             check::column(|| of("upper edge", &band.label), &band.upper, rows)?;
         }
         for level in &panel.levels {
-            check::finite(&of("level", &level.label), level.value)?;
+            check::finite(&of("level", &level.label), &[level.value])?;
         }
         for mark in &panel.marks {
-            check::finite(&of("mark", &mark.label), mark.value)?;
+            check::finite(&of("mark", &mark.label), &[mark.value])?;
         }
     }
     Ok(())

@@ -33,12 +33,9 @@ const SCRIPTS: [&str; 4] = [
 pub fn to_html(page: &Page) -> Result<String, Error> {
     let environment = environment()?;
     let mut drawing = Drawing::default();
-    let parts: Vec<Value> = page
-        .parts
-        .iter()
-        .enumerate()
-        .map(|(place, part)| drawing.part(place, part))
-        .collect::<Result<_, _>>()?;
+    let parts = page.parts.iter().enumerate();
+    let parts = parts.map(|(place, part)| drawing.part(place, part));
+    let parts: Vec<Value> = parts.collect::<Result<_, _>>()?;
     let data = json!({ "columns": drawing.columns.finish(), "charts": drawing.charts });
     let whole = environment.get_template("page.html").map_err(template)?;
     whole
@@ -71,11 +68,9 @@ struct Drawing {
 
 impl Drawing {
     fn part(&mut self, place: usize, part: &Part) -> Result<Value, Error> {
-        let sections: Vec<Value> = part
-            .sections
-            .iter()
-            .map(|section| self.section(place, section))
-            .collect::<Result<_, _>>()?;
+        let sections = part.sections.iter();
+        let sections = sections.map(|section| self.section(place, section));
+        let sections: Vec<Value> = sections.collect::<Result<_, _>>()?;
         let mut shown = json!({
             "id": format!("part-{}", place + 1),
             "name": part.name,
@@ -90,11 +85,8 @@ impl Drawing {
     }
 
     fn section(&mut self, place: usize, section: &Section) -> Result<Value, Error> {
-        let items: Vec<Value> = section
-            .items
-            .iter()
-            .map(|item| self.item(item))
-            .collect::<Result<_, _>>()?;
+        let items = section.items.iter().map(|item| self.item(item));
+        let items: Vec<Value> = items.collect::<Result<_, _>>()?;
         Ok(json!({
             "id": format!("p{}-{}", place + 1, section.id),
             "title": section.title,
@@ -193,20 +185,18 @@ impl Drawing {
                 "values": column(&line.values, factor, true),
             }));
         }
+        let level = |label: &str, value: f64| json!({ "label": label, "value": value });
         let levels = panel.levels.iter();
-        let marks = panel.marks.iter();
+        let levels = levels.map(|one| level(&one.label, factor * one.value));
+        let marks = panel.marks.iter().map(|one| level(&one.label, one.value));
         json!({
             "name": panel.name,
             "unit": unit,
             "abscissa": abscissa,
             "bands": bands,
             "lines": lines,
-            "levels": levels
-                .map(|one| json!({ "label": one.label, "value": factor * one.value }))
-                .collect::<Vec<_>>(),
-            "marks": marks
-                .map(|one| json!({ "label": one.label, "value": one.value }))
-                .collect::<Vec<_>>(),
+            "levels": levels.collect::<Vec<_>>(),
+            "marks": marks.collect::<Vec<_>>(),
             "scaleFrom": panel.scale_from,
         })
     }

@@ -10,7 +10,7 @@ use gyrocal_answer::Parameter;
 use gyrocal_document::{Column, Screen, Table};
 use gyrocal_record::{
     CalibrationReport, EffectTest, FitVerdict, FittedEffects, InputRole, NamedCause, NoiseEstimate,
-    NoiseRatio,
+    NoiseRatio, SetupProblem,
 };
 
 /// Records that are told one by one.
@@ -24,9 +24,7 @@ pub fn calibration_screen(report: &CalibrationReport) -> Screen {
     let (standing, verdict, what) = heading(report);
     let mut screen = Screen::new(standing, verdict, what);
     if report.verdict == FitVerdict::Setup {
-        for problem in &report.setup {
-            screen.fact("what is wrong", problem.text());
-        }
+        screen.each("what is wrong", report.setup.iter().map(SetupProblem::text));
         return screen;
     }
     let shown = report.effects.iter().filter(|one| !one.causes.is_empty());
@@ -38,9 +36,8 @@ pub fn calibration_screen(report: &CalibrationReport) -> Screen {
     if let Some(with) = &report.with_effects {
         screen.fact("with it", fitted(with));
     }
-    for problem in report.setup.iter().take(RECORDS_SHOWN) {
-        screen.fact("set-up mended", problem.placed());
-    }
+    let mended = report.setup.iter().take(RECORDS_SHOWN);
+    screen.each("set-up mended", mended.map(SetupProblem::placed));
     match report.usable {
         true => results(report, &mut screen),
         false => screen.fact(
@@ -48,9 +45,8 @@ pub fn calibration_screen(report: &CalibrationReport) -> Screen {
             "check the units of [noise] and time, that up is positive, latitude and initial angles",
         ),
     }
-    for one in report.records.iter().take(RECORDS_SHOWN) {
-        screen.fact("record", record_line(one));
-    }
+    let records = report.records.iter().take(RECORDS_SHOWN);
+    screen.each("record", records.map(record_line));
     let more = report.records.len().saturating_sub(RECORDS_SHOWN);
     if more > 0 {
         screen.fact("and", format!("{more} more records"));

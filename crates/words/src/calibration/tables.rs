@@ -6,7 +6,7 @@ use gyrocal_document::{Column, Table};
 use gyrocal_record::{AXES, CalibrationReport, Coefficient, SiteReport, printable_line};
 use gyrocal_statistics::format;
 
-use super::has_several;
+use super::by_number;
 use crate::files::joined;
 use crate::format::with_sigma;
 
@@ -132,12 +132,9 @@ fn site(report: &CalibrationReport) -> Option<Table> {
         });
         [one.name.clone()].into_iter().chain(cells)
     });
-    let of = match has_several(report) {
-        true => "errors of the first record's site",
-        false => "errors of the site",
-    };
+    let of = by_number(report, ["the site", "the first record's site"]);
     let title = format!(
-        "Sensitivity to {of}, which the residuals do not show: bias of each coefficient in its unit"
+        "Sensitivity to errors of {of}, which the residuals do not show: bias of each coefficient in its unit"
     );
     (!sites.is_empty()).then(|| Table::new(&title, columns.collect(), rows))
 }

@@ -6,16 +6,13 @@ use gyrocal_record::{
 };
 use gyrocal_statistics::format::p_value;
 
-use super::has_several;
+use super::{by_number, has_several};
 use crate::files::joined;
 use crate::format::capitalised;
 
 /// The verdict in a word, and what it means in a clause.
 pub(super) fn heading(report: &CalibrationReport) -> (Standing, &'static str, String) {
-    let of = match has_several(report) {
-        true => "the records show",
-        false => "the record shows",
-    };
+    let of = by_number(report, ["the record shows", "the records show"]);
     let nominal = match report.with_effects {
         None => "the model lacks: the coefficients may be biased",
         Some(_) => "the nominal model lacks",

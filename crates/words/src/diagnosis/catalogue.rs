@@ -8,6 +8,7 @@ use gyrocal_answer::Answer;
 use gyrocal_document::{Screen, Standing};
 
 use crate::files::joined;
+use crate::format::behind;
 
 /// All that the catalogue says of an effect.
 #[must_use]
@@ -45,8 +46,7 @@ pub fn typical_size(effect: &Effect) -> String {
     let unit = effect.parameters.first().map_or("", |first| first.unit);
     match unit {
         "" => String::new(),
-        "1" => format::short(effect.typical_size, 3),
-        unit => format!("{} {unit}", format::short(effect.typical_size, 3)),
+        unit => format::short(effect.typical_size, 3) + &behind(unit),
     }
 }
 

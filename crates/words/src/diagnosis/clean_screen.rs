@@ -11,17 +11,12 @@ use gyrocal_document::{Screen, Standing};
 
 pub(super) fn clean(result: &Answer) -> Screen {
     let is_short = result.hides_most();
-    let mut screen = match is_short {
-        true => Screen::new(
-            Standing::Doubtful,
-            "TOO SHORT TO TELL",
-            "the record fits the model, and would with most faults of typical size",
-        ),
-        false => Screen::new(
-            Standing::Good,
-            "NO FAULT FOUND",
-            "the record fits the model and the declared noise",
-        ),
+    let mut screen = if is_short {
+        let what = "the record fits the model, and would with most faults of typical size";
+        Screen::new(Standing::Doubtful, "TOO SHORT TO TELL", what)
+    } else {
+        let what = "the record fits the model and the declared noise";
+        Screen::new(Standing::Good, "NO FAULT FOUND", what)
     };
     let words = format!(
         "{} tested, false-alarm rate {}; {}",

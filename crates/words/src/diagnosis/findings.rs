@@ -3,18 +3,15 @@
 use gyrocal_statistics::format::short as rounded;
 
 use crate::files::joined;
-use crate::format::{short, with_sigma};
+use crate::format::{behind, short, with_sigma};
 use gyrocal_answer::{Alternative, AlternativeKind, Parameter};
 
 /// All parameters with their sigmas and units.
 #[must_use]
 pub fn parameter_values(parameters: &[Parameter]) -> String {
     let each = parameters.iter().map(|parameter| {
-        let unit = match parameter.unit.as_str() {
-            "1" => String::new(),
-            unit => format!(" {unit}"),
-        };
-        format!("{} {}{unit}", parameter.name, value(parameter))
+        let (name, unit) = (&parameter.name, behind(&parameter.unit));
+        format!("{name} {}{unit}", value(parameter))
     });
     joined(each, ", ")
 }

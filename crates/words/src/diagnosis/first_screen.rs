@@ -9,8 +9,10 @@ use super::findings::{likely, value};
 use super::records::{self, files};
 use super::verdict;
 use crate::files::{few, joined};
-use crate::format::{NO_P, counted, short, tested};
-use gyrocal_answer::{Answer, Finding, FindingKind, Parameter, ResidualVerdict, Verdict};
+use crate::format::{NO_P, behind, counted, short, tested};
+use gyrocal_answer::{
+    Answer, Finding, FindingKind, Parameter, ResidualVerdict, SetupProblem, Verdict,
+};
 use gyrocal_document::{Screen, Standing};
 
 /// Findings that are told one by one.
@@ -53,14 +55,12 @@ pub fn first_screen(result: &Answer) -> Screen {
         if result.record.duration_s < LEAST_TURN_S && !result.is_strapdown() {
             screen.fact("set-up", too_short_for_turn());
         }
-        for problem in result.setup.iter().take(PROBLEMS_SHOWN) {
-            screen.fact("set-up mended", problem.placed());
-        }
+        let mended = result.setup.iter().take(PROBLEMS_SHOWN);
+        screen.each("set-up mended", mended.map(SetupProblem::placed));
         if !result.search_complete {
-            screen.fact(
-                "search",
-                "ended at its budget of work: there may be more to find, or other names for it",
-            );
+            let words =
+                "ended at its budget of work: there may be more to find, or other names for it";
+            screen.fact("search", words);
         }
     }
     screen.fact("record", verdict::record(result));
@@ -136,10 +136,7 @@ fn value_with_unit(parameter: &Parameter) -> String {
         Some(sigma) => with_sigma(parameter.estimate, sigma),
         None => value(parameter),
     };
-    match parameter.unit.as_str() {
-        "1" => value,
-        unit => format!("{value} {unit}"),
-    }
+    value + &behind(&parameter.unit)
 }
 
 /// The other members of the confidence sets, exact equivalents and near twins, without repetition.
@@ -275,11 +272,8 @@ pub(super) fn plan(result: &Answer, screen: &mut Screen, why: &str) {
 
 fn unexplained(result: &Answer) -> Screen {
     let test = &result.remainder;
-    let mut screen = Screen::new(
-        Standing::Bad,
-        "UNEXPLAINED",
-        "the record contradicts the model, and no effect of the catalogue explains it",
-    );
+    let what = "the record contradicts the model, and no effect of the catalogue explains it";
+    let mut screen = Screen::new(Standing::Bad, "UNEXPLAINED", what);
     screen.fact("what is seen", &*test.description);
     let words = format!(
         "{}; {} of sound records would show any effect by chance",
@@ -287,10 +281,8 @@ fn unexplained(result: &Answer) -> Screen {
         percent(result.false_alarm_probability)
     );
     screen.fact("how sure", words);
-    screen.fact(
-        "may also be",
-        "an effect that the catalogue lacks: docs/adding-a-term.md adds one",
-    );
+    let words = "an effect that the catalogue lacks: docs/adding-a-term.md adds one";
+    screen.fact("may also be", words);
     screen.fact("coefficients", BIASED);
     let (option, why) = match result.records.is_empty() {
         true => ("--figures figures", "pictures of the residual"),

@@ -3,6 +3,7 @@
 use gyrocal_statistics::format::with_sigma;
 
 use crate::files::{input_files, joined, record_and_bench};
+use crate::format::behind;
 use gyrocal_answer::{Answer, Finding, FindingKind, SizeChoice, Verdict};
 
 /// Whether an effect has one size in all records, and its sizes in each.
@@ -21,10 +22,7 @@ pub fn sizes(finding: &Finding) -> Option<String> {
             format!("one size or one for each turn-on: cannot be told apart ({odds:.1} nats)")
         }
     };
-    let unit = match finding.parameters.first().map_or("1", |size| &*size.unit) {
-        "1" => String::new(),
-        unit => format!(" {unit}"),
-    };
+    let unit = behind(finding.parameters.first().map_or("1", |size| &size.unit));
     let sizes = found.sizes.iter().map(|one| {
         let own = one.estimates.iter();
         let own = own.map(|size| with_sigma(size.estimate, size.sigma));

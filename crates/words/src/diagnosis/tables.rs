@@ -89,19 +89,15 @@ fn gain(finding: &Finding) -> String {
 
 fn of_nominal(shown: &Residuals) -> Table {
     let mut rows: Vec<Vec<String>> = Vec::new();
-    let mut row = |name: String, cells: [String; 3]| {
-        rows.push(core::iter::once(name).chain(cells).collect());
+    let mut row = |name: &str, cells: [String; 3]| {
+        rows.push([name.to_owned()].into_iter().chain(cells).collect());
     };
-    row(
-        "open-loop simulation error, g rms".to_owned(),
-        shown.free_run_rms_g.map(|rms| format!("{rms:.2e}")),
-    );
+    let rms = shown.free_run_rms_g.map(|rms| format!("{rms:.2e}"));
+    row("open-loop simulation error, g rms", rms);
     let correlation = shown.autocorrelation.as_ref();
     if let Some(first) = correlation.and_then(|found| found.correlation.first()) {
-        row(
-            "lag-1 correlation".to_owned(),
-            first.map(|correlation| format!("{correlation:+.3}")),
-        );
+        let first = first.map(|correlation| format!("{correlation:+.3}"));
+        row("lag-1 correlation", first);
     }
     for against in &shown.against {
         let covariate = match against.abscissa.as_str() {
@@ -112,10 +108,8 @@ fn of_nominal(shown: &Residuals) -> Table {
             "force_z_g" => "specific force along z",
             other => other,
         };
-        row(
-            format!("regression on {covariate}, p"),
-            against.p_value.map(p_cell),
-        );
+        let name = format!("regression on {covariate}, p");
+        row(&name, against.p_value.map(p_cell));
     }
     Table::new("Residuals of the nominal model", by_axis(), rows)
 }

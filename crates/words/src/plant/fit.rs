@@ -2,11 +2,11 @@
 
 use gyrocal_answer::{OutputFit, PlantComparison, PlantFit, RecordSummary, SimulationError};
 use gyrocal_document::{Screen, Standing};
-use gyrocal_statistics::format::{estimate, significant};
+use gyrocal_statistics::format::significant;
 
 use super::{coloured, direction, is_coloured, rms, undeclared_noise};
 use crate::files::{few, joined};
-use crate::format::{counted, short};
+use crate::format::{counted, short, with_sigma};
 
 /// Estimates that a first screen shows, and other things.
 const SHOWN: usize = 9;
@@ -31,7 +31,7 @@ pub fn fit_screen(fit: &PlantFit) -> Screen {
     let what = format!("{} to {rows} rows over {} s.", fit.plant, short(duration_s));
     let mut screen = Screen::new(standing, verdict, what);
     let estimates = fit.coefficients.nominal.iter().map(|one| {
-        let value = estimate(one.estimate, one.sigma).join(" ± ");
+        let value = with_sigma(one.estimate, one.sigma);
         format!("{} {value} {}", one.name, one.unit)
     });
     screen.fact("estimates", few(estimates, SHOWN));
@@ -61,9 +61,7 @@ pub fn fit_screen(fit: &PlantFit) -> Screen {
         let words = coloured(one).replace("Significances rest", "Standard deviations rest");
         screen.fact("remainder", words.replace("too good", "too small"));
     }
-    for one in &fit.undetermined {
-        screen.fact("undetermined", direction(one));
-    }
+    screen.each("undetermined", fit.undetermined.iter().map(direction));
     screen.fact("still inputs", fit.still_inputs.join(", "));
     screen
 }

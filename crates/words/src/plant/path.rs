@@ -1,8 +1,8 @@
 //! Errors in parts that were left out of the fit, in words.
 
 use gyrocal_answer::{PathStep, Refusal};
-use gyrocal_statistics::format::significant;
 
+use super::rms;
 use crate::files::joined;
 
 /// What left-out parts say of the effects, a sentence for each output and one for each reason of a refusal.
@@ -16,8 +16,7 @@ pub fn path(path: &[PathStep]) -> Vec<String> {
     let mut all: Vec<String> = outputs
         .map(|(output, first)| {
             let error = |step: &PathStep| {
-                let own = step.outputs.get(output).and_then(|own| own.left_out);
-                own.map_or_else(|| "∞".to_owned(), |rms| significant(rms, 3))
+                rms(step.outputs.get(output).and_then(|own| own.left_out))
             };
             let (name, unit) = (&first.output, &first.unit);
             let mut text = format!(
