@@ -23,7 +23,7 @@ const SMALL: [&str; 6] = [
 
 /// Records of most rows, and of the small version of the row that has more: they are short.
 const EACH: u64 = 20;
-const SHORT: u64 = 40;
+const SHORT: u64 = 56;
 
 /// Answers that are asked for.
 const LEAST: usize = 5_000;
