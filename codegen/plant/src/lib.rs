@@ -5,7 +5,7 @@
 //! A user's plant is one Python file that declares it with the package `gyrocal_plant` and ends with
 //! `plant.write()` (`docs/any-plant.md`). [`derive()`] runs such a file with the pinned CasADi, in the private
 //! environment of `gyrocal-codegen`, and returns the program and its Rust. [`build`] does it for the build
-//! script of a package, and [`Package`] writes such a package. The Python package is embedded: nothing of it
+//! script of a package, and [`Package`] has the files of such a package. The Python package is embedded: nothing of it
 //! has to be installed.
 //!
 //! # Example

@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use gyrocal_codegen::program::is_snake_case;
+
 use crate::error::{Error, at};
 
 /// Where a package takes the libraries from.
@@ -48,13 +50,7 @@ impl Package {
     /// [`Error::Package`] if the name is none of a package, or the path has no tree of gyrocal;
     /// [`Error::File`] if the path cannot be found.
     pub fn new(name: &str, source: Source) -> Result<Self, Error> {
-        let mut letters = name.chars();
-        let begins = letters.next().is_some_and(|one| one.is_ascii_alphabetic());
-        if !begins || !letters.all(|one| one.is_ascii_alphanumeric() || "-_".contains(one)) {
-            return Err(Error::Package(format!(
-                "`{name}` is no name of a package: begin with a letter, go on with letters, digits, - and _"
-            )));
-        }
+        refuse_name(name)?;
         let source = match source {
             Source::Path(path) => Source::Path(tree(&path)?),
             version @ Source::Version(_) => version,
@@ -111,26 +107,39 @@ impl Package {
         ];
         Ok(Self { files, source })
     }
+}
 
-    /// Writes the files into a new directory.
-    ///
-    /// # Errors
-    /// [`Error::Package`] if the directory exists and is not empty; [`Error::File`].
-    pub fn write(&self, directory: &Path) -> Result<(), Error> {
-        let taken = std::fs::read_dir(directory).is_ok_and(|mut files| files.next().is_some());
-        if taken || directory.is_file() {
-            return Err(Error::Package(format!(
-                "{} exists and is not empty: give another name",
-                directory.display()
-            )));
-        }
-        for file in &self.files {
-            let path = directory.join(file.path);
-            let folder = path.parent().unwrap_or(directory);
-            std::fs::create_dir_all(folder).map_err(at("written", folder))?;
-            std::fs::write(&path, &file.text).map_err(at("written", &path))?;
-        }
-        Ok(())
+/// Crates of Rust, and folders of a build: cargo makes no program of these names.
+const TAKEN: [&str; 9] = [
+    "alloc",
+    "build",
+    "core",
+    "deps",
+    "examples",
+    "incremental",
+    "proc_macro",
+    "std",
+    "test",
+];
+
+/// Refuses a name of which cargo builds no package.
+fn refuse_name(name: &str) -> Result<(), Error> {
+    let module = name.to_ascii_lowercase().replace('-', "_");
+    let refused = |why: &str| Err(Error::Package(format!("`{name}` {why}")));
+    if module == "gyrocal" || module.starts_with("gyrocal_") {
+        return refused(
+            "is the name of a package of gyrocal, or may become one: give another name",
+        );
+    }
+    if TAKEN.contains(&module.as_str()) {
+        return refused("is a name that cargo keeps for itself: give another name, as my-plant");
+    }
+    match is_snake_case(&module) {
+        true => Ok(()),
+        false => refused(
+            "is no name of a package: give words of letters and digits, joined by - or _, of which the first begins \
+             with a letter, and no keyword of Rust",
+        ),
     }
 }
 

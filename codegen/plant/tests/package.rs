@@ -34,18 +34,31 @@ fn a_new_package_is_the_one_that_the_workspace_builds() {
             assert_eq!(file.text, committed, "{}", file.path);
         }
     }
-    let directory = tempfile::tempdir().unwrap();
-    package.write(directory.path()).unwrap();
-    assert!(directory.path().join("src/main.rs").is_file());
-    let error = package.write(directory.path()).unwrap_err().to_string();
-    assert!(error.contains("exists and is not empty"), "{error}");
 }
 
 #[test]
 fn names_and_trees_that_are_none_are_refused() {
     let version = || Source::Version("0.1.0".to_owned());
-    assert!(Package::new("1st", version()).is_err());
-    assert!(Package::new("a b", version()).is_err());
+    let refused = |name: &str| Package::new(name, version()).unwrap_err().to_string();
+    for name in ["1st", "a b", "", "a/b", "fn", "self", "gen", "a-"] {
+        let error = refused(name);
+        assert!(error.contains("is no name of a package"), "{error}");
+    }
+    for name in ["test", "std", "proc-macro", "deps"] {
+        let error = refused(name);
+        assert!(error.contains("keeps for itself"), "{error}");
+    }
+    // A package of the tree would meet one of the same name in the lock file.
+    for name in ["gyrocal", "gyrocal-plant", "gyrocal_fleet"] {
+        let error = refused(name);
+        assert!(
+            error.contains("is the name of a package of gyrocal"),
+            "{error}"
+        );
+    }
+    for name in ["my-plant", "Cart_Pole2", "gyro"] {
+        Package::new(name, version()).unwrap();
+    }
     let manifest = &Package::new("plant", version()).unwrap().files[0].text;
     assert!(
         manifest.contains("gyrocal-plant = { version = \"=0.1.0\" }"),

@@ -7,6 +7,17 @@ use serde::Deserialize;
 
 use crate::{Answer, PlantFit, SCHEMA_VERSION, Subject};
 
+/// The hash of the model that a result is of, where it tells one.
+#[derive(Deserialize)]
+struct OfModel {
+    manifest: ModelHash,
+}
+
+#[derive(Deserialize)]
+struct ModelHash {
+    model_hash: String,
+}
+
 /// The key that results of any version have.
 #[derive(Deserialize)]
 struct Versioned {
@@ -87,17 +98,21 @@ pub fn read_platform_text(source: &SourceText) -> Result<Answer, Error> {
     ))
 }
 
-/// Reads the fit of a plant, that `gyrocal plant fit --json` of this version wrote.
+/// Reads the fit of a plant, that `gyrocal plant fit --json` of this version wrote, and the hash of the program of the
+/// plant; it is empty in files of the time before it was written.
 ///
 /// # Errors
 /// [`Error::Unreadable`], and [`Error::Input`] with line and column if it is no such fit.
 #[inline]
-pub fn read_fit(path: &Path) -> Result<PlantFit, Error> {
+pub fn read_fit(path: &Path) -> Result<(PlantFit, String), Error> {
     let source = SourceText::read(path)?;
     let made_by = ["fit of a plant", "gyrocal plant fit"];
     refuse_other_version(&source, gyrocal_record::SCHEMA_VERSION, made_by)?;
-    let read = serde_json::from_str(source.text());
-    read.map_err(|error| no_result(&source, &error, made_by))
+    let fit = serde_json::from_str(source.text());
+    let fit = fit.map_err(|error| no_result(&source, &error, made_by))?;
+    let of_model = serde_json::from_str::<OfModel>(source.text());
+    let hash = of_model.map_or_else(|_| String::new(), |one| one.manifest.model_hash);
+    Ok((fit, hash))
 }
 
 /// Refuses what is not the result of some work, which a command writes.

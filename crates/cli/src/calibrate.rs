@@ -23,6 +23,7 @@ use crate::outputs::manifest_of;
 use crate::page::{self, Views};
 use crate::progress::Progress;
 use crate::records::{Given, with_role};
+use crate::reply::NOTHING_FITTED;
 use crate::{Failure, Reply, exit, gyro_axes};
 pub use failed::NotCalibrated;
 use failed::WrongSetup;
@@ -197,7 +198,12 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Reply, Failure> {
         records: measurements.iter().map(Measurement::calibrated).collect(),
         axes: &gyro_axes,
         with_effects,
-        manifest: manifest_of(MODEL_HASH, 0, &inputs)?,
+        manifest: manifest_of(
+            MODEL_HASH,
+            0,
+            &inputs,
+            measurements.iter().map(|one| &one.bench),
+        )?,
     };
     let report = calibrate_and_diagnose(request, |step| match step {
         CalibrationStep::Row(row) => progress.reach(row),
@@ -243,16 +249,23 @@ fn stopped(
     inputs: &[(InputRole, &Path)],
 ) -> Result<WrongSetup, Failure> {
     let problems = measurements.iter().flat_map(|one| &one.setup);
-    let manifest = manifest_of(MODEL_HASH, 0, inputs)?;
+    let manifest = manifest_of(
+        MODEL_HASH,
+        0,
+        inputs,
+        measurements.iter().map(|one| &one.bench),
+    )?;
     let problems = problems.cloned().collect();
     let report = CalibrationReport::of_wrong_setup(manifest, arguments.method(), problems);
     let mut written = Reply::default();
-    // Nothing was fitted, which leaves nothing to draw.
+    let views = &arguments.views;
+    views.leave_out_figures(NOTHING_FITTED, &mut written)?;
+    written.leave_out(arguments.coefficients.as_deref(), NOTHING_FITTED);
     let part = page::part(arguments.given.first(), of_calibration(&report, &[]))?;
-    page::write(arguments.views.report(), vec![part], &mut written)?;
+    page::write(views.report(), vec![part], &mut written)?;
     written.write_json(arguments.json.as_deref(), &report)?;
-    written.committed()?;
-    Ok(WrongSetup::new(&report, arguments.json.as_deref()))
+    let written = written.committed()?.written;
+    Ok(WrongSetup::new(&report, &written))
 }
 
 /// The coefficients of the first record with the effects of `--with`; `None` without such.

@@ -20,6 +20,7 @@ use crate::outputs::{manifest_of, refuse_itself, write_answer};
 use crate::page::{self, Views};
 use crate::progress::Progress;
 use crate::records::{Given, with_role};
+use crate::reply::NOTHING_FITTED;
 use crate::{Failure, Reply, exit, gyro_axes};
 pub use failed::NotDiagnosed;
 
@@ -132,11 +133,11 @@ pub(crate) fn run(arguments: &DiagnoseArguments) -> Result<Reply, Failure> {
         match diagnose_watched(checked, &bench, &options, |stage| progress.at(stage)) {
             Err(DiagnosisError::Setup { result }) => {
                 drop(progress);
-                return stopped(arguments, *result, &inputs);
+                return stopped(arguments, *result, &inputs, &bench);
             }
             found => found.map_err(failed)?,
         };
-    diagnosis.result.manifest = manifest_of(MODEL_HASH, options.seed, &inputs)?;
+    diagnosis.result.manifest = manifest_of(MODEL_HASH, options.seed, &inputs, [&bench])?;
     if let Some((path, later, later_bench)) = &later {
         let failed = |source| NotDiagnosed::new(path, later_bench, source);
         let axes = arguments.validate_gyro_axes.as_slice();
@@ -145,7 +146,7 @@ pub(crate) fn run(arguments: &DiagnoseArguments) -> Result<Reply, Failure> {
         match diagnosis.validate_gated(checked, later_bench, &options) {
             Err(DiagnosisError::Setup { result }) => {
                 drop(progress);
-                return stopped(arguments, *result, &inputs);
+                return stopped(arguments, *result, &inputs, &bench);
             }
             validated => validated.map_err(failed)?,
         }
@@ -184,14 +185,20 @@ fn checked_inputs(arguments: &DiagnoseArguments) -> Result<Vec<(InputRole, &Path
     Ok(roles)
 }
 
-/// The answer of a record whose set-up is wrong: no pictures, as nothing was fitted.
+/// The answer of a record whose set-up is wrong: neither pictures nor tables, as nothing was fitted.
 fn stopped(
     arguments: &DiagnoseArguments,
     mut result: Answer,
     inputs: &[(InputRole, &Path)],
+    bench: &Bench,
 ) -> Result<Reply, Failure> {
-    result.manifest = manifest_of(MODEL_HASH, result.manifest.seed, inputs)?;
+    result.manifest = manifest_of(MODEL_HASH, result.manifest.seed, inputs, [bench])?;
     let mut answer = Reply::of_answer(&result);
+    arguments
+        .views
+        .leave_out_figures(NOTHING_FITTED, &mut answer)?;
+    answer.leave_out(arguments.findings.as_deref(), NOTHING_FITTED);
+    answer.leave_out(arguments.coefficients.as_deref(), NOTHING_FITTED);
     let parts = vec![of_result(&result)];
     page::write(arguments.views.report(), parts, &mut answer)?;
     write_answer(arguments.json.as_deref(), &result, &mut answer)?;

@@ -42,9 +42,9 @@ pub(crate) fn completions(
 /// Runs `gyrocal man` of a command line: writes all pages or none.
 pub(crate) fn pages(arguments: &ManArguments, mut definition: Command) -> Result<Reply, Failure> {
     let folder = &arguments.folder;
-    make_folder("", folder)?;
-    definition.build();
     let mut outputs = Outputs::new();
+    make_folder("", folder, &mut outputs)?;
+    definition.build();
     let mut names = Vec::new();
     stage(&definition, folder, &mut outputs, &mut names)?;
     let what = format!("{} manual pages in {}", names.len(), printable_path(folder));

@@ -5,11 +5,13 @@ use std::path::{Path, PathBuf};
 use std::sync::{PoisonError, RwLock};
 
 use gyrocal_answer::{Answer, write_text};
-use gyrocal_record::{Error, Input, InputRole, Manifest, Outputs, printable_path, shell_quoted};
+use gyrocal_record::{
+    Bench, Error, Input, InputRole, Manifest, Outputs, file_behind, printable_path, shell_quoted,
+};
 use miette::miette;
 
+use crate::Failure;
 use crate::reply::{RESULT, Reply};
-use crate::{Failure, pictures};
 
 /// Origin of a result: program, command line, inputs.
 pub(crate) fn manifest(model_hash: &str, seed: u64, inputs: &[&Path]) -> Result<Manifest, Error> {
@@ -26,16 +28,22 @@ pub(crate) fn manifest(model_hash: &str, seed: u64, inputs: &[&Path]) -> Result<
     })
 }
 
-/// The same of inputs that the next command may read again.
-pub(crate) fn manifest_of(
+/// The same of inputs that the next command may read again; `benches` are those of the bench files, in their order.
+pub(crate) fn manifest_of<'a>(
     model_hash: &str,
     seed: u64,
     inputs: &[(InputRole, &Path)],
+    benches: impl IntoIterator<Item = &'a Bench>,
 ) -> Result<Manifest, Error> {
     let paths: Vec<&Path> = inputs.iter().map(|(_, path)| *path).collect();
     let mut manifest = manifest(model_hash, seed, &paths)?;
     for (input, (role, _)) in manifest.inputs.iter_mut().zip(inputs) {
         input.role = Some(*role);
+    }
+    let files = manifest.inputs.iter_mut();
+    let files = files.filter(|input| input.role == Some(InputRole::Bench));
+    for (input, bench) in files.zip(benches) {
+        input.identification.clone_from(&bench.identification);
     }
     Ok(manifest)
 }
@@ -58,12 +66,12 @@ pub(crate) fn refuse_overlap(
 ) -> Result<(), Failure> {
     let read = inputs.iter().map(|path| {
         let name = format!("the input {}", printable_path(path));
-        (name, identity(path))
+        (name, file_behind(path))
     });
     let mut taken: Vec<(String, PathBuf)> = read.collect();
     for (option, path) in outputs {
         let Some(path) = path else { continue };
-        let place = identity(path);
+        let place = file_behind(path);
         // Devices and pipes take any number of outputs.
         let replaces = !place.exists() || place.is_file();
         if let Some((other, _)) = taken.iter().find(|(_, taken)| replaces && *taken == place) {
@@ -85,8 +93,8 @@ pub(crate) fn check(
 ) -> Result<(), Failure> {
     refuse_overlap(inputs, &[("--figures", figures), ("--json", json)])?;
     if let (Some(json), Some(figures)) = (json, figures)
-        && identity(json).parent() == Some(&identity(figures))
-        && pictures::is_one(json)
+        && file_behind(json).parent() == Some(&file_behind(figures))
+        && is_picture(json)
     {
         return Err(Failure::Usage(format!(
             "--json {} is among the pictures of --figures {}",
@@ -94,7 +102,16 @@ pub(crate) fn check(
             printable_path(figures)
         )));
     }
+    if let Some(figures) = figures {
+        make_folder("--figures ", figures, &mut Outputs::new())?;
+    }
     refuse_unwritable(&[json], figures)
+}
+
+/// Whether a file has the name of a picture.
+fn is_picture(path: &Path) -> bool {
+    path.extension()
+        .is_some_and(|form| form == "svg" || form == "png")
 }
 
 /// Refuses outputs that cannot be written; `made` is the folder that the command creates for others.
@@ -111,9 +128,17 @@ pub(crate) fn refuse_unwritable(
     Ok(())
 }
 
-/// Makes a folder of outputs, which `option` gives.
-pub(crate) fn make_folder(option: &str, folder: &Path) -> Result<(), Failure> {
-    std::fs::create_dir_all(folder).map_err(|reason| {
+/// Has a folder for outputs, which `option` gives.
+pub(crate) fn make_folder(
+    option: &str,
+    folder: &Path,
+    outputs: &mut Outputs,
+) -> Result<(), Failure> {
+    outputs.folder(folder).map_err(|error| {
+        let reason = match error {
+            Error::Unwritable { reason, .. } => reason.to_string(),
+            other => other.to_string(),
+        };
         Failure::Work(miette!(
             help = "give a folder, or a name that is free",
             "{option}{}: cannot be made: {reason}",
@@ -124,9 +149,9 @@ pub(crate) fn make_folder(option: &str, folder: &Path) -> Result<(), Failure> {
 
 /// Whether the folder of a file does not exist yet, and is created with another folder.
 fn comes_with(path: &Path, made: &Path) -> bool {
-    let path = identity(path);
+    let path = file_behind(path);
     let folder = path.parent().filter(|folder| !folder.exists());
-    folder.is_some_and(|folder| identity(made).starts_with(folder))
+    folder.is_some_and(|folder| file_behind(made).starts_with(folder))
 }
 
 /// Refuses a later record, which an option gives, that is one of the records.
@@ -136,28 +161,17 @@ pub(crate) fn refuse_itself(
     records: &[PathBuf],
 ) -> Result<(), Failure> {
     match later {
-        Some(later) if records.iter().any(|one| identity(one) == identity(later)) => {
+        Some(later)
+            if records
+                .iter()
+                .any(|one| file_behind(one) == file_behind(later)) =>
+        {
             Err(Failure::Usage(format!(
                 "{option} {} is the record itself: a later one has had no part in the models",
                 printable_path(later)
             )))
         }
         _ => Ok(()),
-    }
-}
-
-/// The file behind a path, whether it or its folders exist or not.
-fn identity(path: &Path) -> PathBuf {
-    if let Ok(whole) = path.canonicalize() {
-        return whole;
-    }
-    let folder = match path.parent() {
-        Some(folder) if folder != Path::new("") => folder,
-        _ => Path::new("."),
-    };
-    match path.file_name() {
-        Some(name) => identity(folder).join(name),
-        None => path.to_owned(),
     }
 }
 

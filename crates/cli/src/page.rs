@@ -85,6 +85,21 @@ impl Views {
         self.stage_parts(of, vec![part], drawn, reply)
     }
 
+    /// Tells that there are no pictures, and why.
+    pub(crate) fn leave_out_figures(&self, why: &str, reply: &mut Reply) -> Result<(), Failure> {
+        let Some(folder) = &self.figures else {
+            return Ok(());
+        };
+        // Other outputs may go there.
+        outputs::make_folder("--figures ", folder, &mut reply.outputs)?;
+        let earlier = match folder.is_dir() {
+            true => "; what is there is of earlier runs",
+            false => "",
+        };
+        reply.wrote(folder, &format!("no pictures, {why}{earlier}"));
+        Ok(())
+    }
+
     /// Stages a report of several parts and the pictures that are drawn of them, and tells of both.
     pub(crate) fn stage_parts(
         &self,

@@ -31,12 +31,6 @@ const WIDTH_PX: u32 = 1200;
 /// A picture with the name of its files.
 pub(crate) type Named = (String, Box<dyn Picture>);
 
-/// Whether a file has the name of a picture.
-pub(crate) fn is_one(path: &Path) -> bool {
-    path.extension()
-        .is_some_and(|form| form == "svg" || form == "png")
-}
-
 /// Stages the pictures of an input, to be committed with the other outputs; returns what there is in
 /// the folder, for stdout.
 pub(crate) fn stage(
@@ -45,7 +39,7 @@ pub(crate) fn stage(
     folder: &Path,
     outputs: &mut Outputs,
 ) -> Result<String, Failure> {
-    make_folder("--figures ", folder)?;
+    make_folder("--figures ", folder, outputs)?;
     let mut names = Vec::new();
     for (name, picture) in pictures {
         let svg = match picture.to_svg() {

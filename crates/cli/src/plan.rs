@@ -127,7 +127,7 @@ pub(crate) fn run(arguments: &PlanArguments) -> Result<Reply, Failure> {
     drop(progress);
     planned.record = known.summary;
     planned.setup.clone_from(&known.setup);
-    planned.manifest = manifest_of(MODEL_HASH, options.seed, &read)?;
+    planned.manifest = manifest_of(MODEL_HASH, options.seed, &read, &benches)?;
     let part = of_plan(&planned);
     let mut answer = Reply::of_part(&part);
     let views = &arguments.views;

@@ -11,7 +11,8 @@ mod simulate;
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
-use gyrocal_plant::{LoadedPlant, PlantError};
+use gyrocal_plant::description::Description;
+use gyrocal_plant::{ColumnMap, LoadedPlant, NamedRecord, PlantError};
 use miette::Report;
 
 use crate::{Failure, Reply, terminal};
@@ -64,6 +65,12 @@ struct OfPlant<T: Args> {
     plant: PathBuf,
     #[command(flatten)]
     own: T,
+}
+
+/// Warns of inputs that a record does not tell for a while.
+fn warn_of_gaps(columns: &ColumnMap, plant: &Description, record: &NamedRecord) {
+    let notes = columns.bridged(plant, record);
+    notes.iter().for_each(|note| terminal::warn(note));
 }
 
 impl From<PlantError> for Failure {

@@ -14,6 +14,9 @@ use crate::{Failure, layout, terminal};
 /// What the file of `--json` holds.
 pub(crate) const RESULT: &str = "the result for programs";
 
+/// Why there is an answer without tables and pictures.
+pub(crate) const NOTHING_FITTED: &str = "as nothing was fitted";
+
 /// Result of a command: what it says, and the files that it writes.
 #[derive(Debug, Default)]
 pub(crate) struct Reply {
@@ -84,6 +87,17 @@ impl Reply {
             self.wrote(path, RESULT);
         }
         Ok(())
+    }
+
+    /// Has nothing for a file that is asked for: tells it, and removes what an earlier run wrote there.
+    pub(crate) fn leave_out(&mut self, path: Option<&Path>, why: &str) {
+        let Some(path) = path else { return };
+        let removed = match path.is_file() {
+            true => "; the earlier file is removed",
+            false => "",
+        };
+        self.outputs.remove(path);
+        self.wrote(path, &format!("not written, {why}{removed}"));
     }
 
     /// Writes the staged files, each of them whole.

@@ -146,7 +146,7 @@ fn of_record(
     let options = DiagnoseOptions::default();
     let pair = [(InputRole::Record, path), (InputRole::Bench, bench_path)];
     let inputs: Vec<(InputRole, &Path)> = pair.into_iter().chain(arguments.map.input()).collect();
-    let origin = manifest_of(MODEL_HASH, options.seed, &inputs)?;
+    let origin = manifest_of(MODEL_HASH, options.seed, &inputs, [&bench])?;
     let _progress = Progress::waiting("diagnosing", file.record().len());
     let gate = Gate::of_file(PlatformKind::Stabilised, file, &bench, &options.calibration)?;
     match diagnose_gated(gate, &bench, &options) {

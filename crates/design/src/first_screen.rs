@@ -119,7 +119,14 @@ fn question(plan: &PlanResult) -> String {
     match (sets.is_empty(), plan.aim) {
         (false, _) => sets,
         (true, Aim::Set) => "every finding has one name".to_owned(),
-        (true, Aim::Sigmas) => "no cause is in doubt: the run reduces the sigmas most".to_owned(),
+        // A plan has no verdict: a record without findings, or with one name for each, may still be unexplained.
+        (true, Aim::Sigmas) => {
+            let what = match plan.now.sets.as_slice() {
+                [] => "there are no findings",
+                _ => "every finding has one name",
+            };
+            format!("{what}: the run reduces the sigmas most")
+        }
     }
 }
 

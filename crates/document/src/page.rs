@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::{Bars, Chart, Estimates, List, Screen, Table, Words};
+use crate::{Bars, Chart, Estimates, Fact, List, Screen, Table, Words};
 
 /// A page: one answer, or several below each other.
 #[derive(Clone, Debug, PartialEq)]
@@ -84,6 +84,10 @@ impl From<Table> for Item {
 /// Where an answer comes from.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Origin {
+    /// What identifies unit and run.
+    pub identification: Vec<Fact>,
+    /// The foot of each printed page: report, unit, program and model.
+    pub foot: String,
     /// Program and version.
     pub program: String,
     /// Hash of the symbolic model; empty if there is none.

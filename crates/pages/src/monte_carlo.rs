@@ -189,7 +189,7 @@ mod tests {
                 inputs: vec![Input {
                     path: "folder/s.toml".to_owned(),
                     sha256: String::new(),
-                    role: None,
+                    ..Input::default()
                 }],
                 seed: 0,
                 command: "gyrocal monte-carlo".to_owned(),

@@ -1,13 +1,59 @@
 //! Origin of an answer.
 
-use gyrocal_document::{Origin, OriginFile};
+use std::collections::BTreeMap;
+
+use gyrocal_document::{Fact, Origin, OriginFile};
 use gyrocal_record::{Input, Manifest};
 use gyrocal_words::counted;
 
-/// Program, command and files of a manifest.
+/// Keys of an identification that stand first, in this order.
+const FIRST: [&str; 9] = [
+    "report_number",
+    "unit",
+    "serial_number",
+    "serial_numbers",
+    "laboratory",
+    "place",
+    "operator",
+    "date",
+    "time",
+];
+
+/// How many of these keys stand in the foot of each page.
+const IN_FOOT: usize = 4;
+
+/// Program, command, files and identification of a manifest.
 pub(crate) fn origin(manifest: &Manifest) -> Origin {
+    let program = format!("{} {}", manifest.program, manifest.version);
+    let mut facts: BTreeMap<(usize, &str), Vec<&str>> = BTreeMap::new();
+    for (key, value) in manifest.inputs.iter().flat_map(|one| &one.identification) {
+        let place = FIRST.iter().position(|first| first == key);
+        let values = facts
+            .entry((place.unwrap_or(FIRST.len()), key))
+            .or_default();
+        // Bench files of several records differ in some of them.
+        if !values.contains(&&**value) {
+            values.push(value);
+        }
+    }
+    let in_foot = facts.keys().filter(|(place, _)| *place < IN_FOOT).count();
+    let facts = facts.iter().map(|((_, key), values)| Fact {
+        label: key.replace('_', " "),
+        words: values.join("; "),
+    });
+    let identification: Vec<Fact> = facts.collect();
+    let foot = identification[..in_foot].iter();
+    let mut foot: Vec<String> = foot
+        .map(|one| format!("{} {}", one.label, one.words))
+        .collect();
+    foot.push(program.clone());
+    if !manifest.model_hash.is_empty() {
+        foot.push(format!("model {}", manifest.model_hash));
+    }
     Origin {
-        program: format!("{} {}", manifest.program, manifest.version),
+        identification,
+        foot: foot.join(" · "),
+        program,
         model_hash: manifest.model_hash.clone(),
         seed: manifest.seed.to_string(),
         command: manifest.command.clone(),
@@ -43,5 +89,52 @@ pub(crate) fn named(files: &[Input]) -> String {
         [] => String::new(),
         [one] => one.path.clone(),
         [first, rest @ ..] => format!("{} and {} further logs", first.path, rest.len()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_identifies_a_run_is_told_once_and_in_order() {
+        let bench = |facts: &[(&str, &str)]| {
+            let facts = facts.iter();
+            Input {
+                identification: facts
+                    .map(|(key, value)| ((*key).to_owned(), (*value).to_owned()))
+                    .collect(),
+                ..Input::default()
+            }
+        };
+        let manifest = Manifest {
+            program: "gyrocal".to_owned(),
+            version: "1.2.3".to_owned(),
+            model_hash: "abc".to_owned(),
+            inputs: vec![
+                Input::default(),
+                bench(&[("chamber", "2"), ("date", "2026-03-01"), ("unit", "P-7")]),
+                bench(&[
+                    ("date", "2026-03-02"),
+                    ("report_number", "R 17"),
+                    ("unit", "P-7"),
+                ]),
+            ],
+            ..Manifest::default()
+        };
+        let found = origin(&manifest);
+        let facts = found.identification.iter();
+        let facts: Vec<_> = facts.map(|one| (&*one.label, &*one.words)).collect();
+        let expected = [
+            ("report number", "R 17"),
+            ("unit", "P-7"),
+            ("date", "2026-03-01; 2026-03-02"),
+            ("chamber", "2"),
+        ];
+        assert_eq!(facts, expected);
+        assert_eq!(
+            found.foot,
+            "report number R 17 · unit P-7 · gyrocal 1.2.3 · model abc"
+        );
     }
 }

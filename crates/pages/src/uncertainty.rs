@@ -1,5 +1,6 @@
 //! The sections of an uncertainty budget, and of the scatter over runs.
 
+use gyrocal_calibration::{SiteQuantity, UncertaintySource};
 use gyrocal_diagnosis::{
     CoefficientUncertainty, NOT_STATED, RecordUncertainty, RunSpread, UncertaintyResult, by_source,
 };
@@ -60,19 +61,7 @@ pub fn of_budget(budget: &RecordUncertainty) -> Section {
                    | > coverage factor | > expanded, 95 % | unit";
     let rows = budget.coefficients.iter().map(result_row);
     let results = Table::of("Results", heads, rows);
-    let rows = budget.coefficients.iter().flat_map(|one| {
-        let sources = by_source(one).into_iter();
-        sources.map(|(source, kind, distribution, standard)| {
-            let standard = match standard {
-                0.0 => "0".to_owned(),
-                some => format!("{some:.1e}"),
-            };
-            let [source, kind, distribution] =
-                [source, kind.letter(), distribution].map(str::to_owned);
-            let (name, unit) = (one.name.clone(), one.unit.clone());
-            [name, source, kind, distribution, standard, unit]
-        })
-    });
+    let rows = budget.coefficients.iter().flat_map(contribution_rows);
     let heads = "coefficient | source | type | distribution | > standard uncertainty | unit";
     let contributions = Table::of("Contributions", heads, rows);
     let mut lead = format!(
@@ -95,13 +84,14 @@ pub fn of_budget(budget: &RecordUncertainty) -> Section {
 #[must_use]
 pub fn of_spread(spread: &RunSpread) -> Section {
     let rows = spread.coefficients.iter().map(|one| {
-        let [mean, _] = format::estimate(one.mean, one.standard_deviation);
+        let [mean, deviation] = format::estimate(one.mean, one.standard_deviation);
+        let [_, expected] = format::estimate(one.mean, one.expected);
         [
             one.term.clone(),
             one.name.clone(),
             mean,
-            format!("{:.2e}", one.standard_deviation),
-            format!("{:.2e}", one.expected),
+            deviation,
+            expected,
             format!("{:.2}", one.p_value),
             one.answer().to_owned(),
             one.unit.clone(),
@@ -122,24 +112,50 @@ fn result_row(one: &CoefficientUncertainty) -> [String; 8] {
         Some(few) if few < 1e6 => format!("{few:.0}"),
         _ => "∞".to_owned(),
     };
-    let [estimate, _] = format::estimate(one.estimate, one.combined);
+    let [estimate, combined] = format::estimate(one.estimate, one.combined);
+    let [_, expanded] = format::estimate(one.estimate, one.expanded);
     [
         one.term.clone(),
         one.name.clone(),
         estimate,
-        format!("{:.2e}", one.combined),
+        combined,
         degrees,
         format::short(one.coverage_factor, 3),
-        format!("{:.2e}", one.expanded),
+        expanded,
         one.unit.clone(),
     ]
+}
+
+/// What stands in place of a quantity that the bench description leaves out.
+const NOT_DECLARED: &str = "not declared";
+
+/// The contributions to a coefficient. A quantity of the site without a declared uncertainty has none, as it counts
+/// as exact: that is told.
+fn contribution_rows(one: &CoefficientUncertainty) -> Vec<[String; 6]> {
+    let told = by_source(one);
+    let site = SiteQuantity::ALL.into_iter().map(UncertaintySource::Site);
+    let site = site.filter(|quantity| told.iter().all(|line| line.0 != quantity.name()));
+    let undeclared = site.map(|one| [one.name(), "B", one.distribution(), NOT_DECLARED]);
+    let undeclared = undeclared.map(|line| line.map(str::to_owned));
+    let lines = told.iter().map(|(source, kind, distribution, standard)| {
+        let standard = format::significant(*standard, 2);
+        let [source, kind, distribution] =
+            [*source, kind.letter(), *distribution].map(str::to_owned);
+        [source, kind, distribution, standard]
+    });
+    let lines = lines.chain(undeclared);
+    let rows = lines.map(|[source, kind, distribution, standard]| {
+        let (name, unit) = (one.name.clone(), one.unit.clone());
+        [name, source, kind, distribution, standard, unit]
+    });
+    rows.collect()
 }
 
 /// Conditions of the test.
 fn conditions(budget: &RecordUncertainty) -> Table {
     let of = &budget.conditions;
     let angles = of.initial_angles_deg.map_or_else(
-        || "not declared".to_owned(),
+        || NOT_DECLARED.to_owned(),
         |[x, y, z]| format!("{x:.4}°, {y:.4}°, {z:.4}°"),
     );
     let temperature = of.temperature_c.map_or_else(

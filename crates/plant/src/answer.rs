@@ -52,7 +52,7 @@ pub(crate) fn answer(
         manifest: Manifest {
             program: "gyrocal".to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
-            model_hash: String::new(),
+            model_hash: plant.hash().to_owned(),
             inputs: Vec::new(),
             seed: options.seed,
             command: String::new(),

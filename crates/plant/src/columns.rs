@@ -19,11 +19,16 @@ use std::io::{self, Read};
 use std::path::Path;
 
 use gyrocal_record::{Error, open_text, printable_path};
+use gyrocal_statistics::format;
+use gyrocal_words::few;
 use serde::Deserialize;
 
 use crate::description::{Description, Output};
 use crate::error::PlantError;
 use crate::record::{NamedRecord, PlantRecord};
+
+/// Gaps of a record that are told one by one.
+const GAPS_SHOWN: usize = 3;
 
 /// A column with the unit of the plant.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
@@ -119,7 +124,7 @@ impl ColumnMap {
         description: &Description,
         path: &Path,
     ) -> Result<PlantRecord, PlantError> {
-        self.rows(description, path, &description.outputs)
+        Ok(self.named_record(description, path)?.record)
     }
 
     /// Reads the time and the inputs of a run that has not been made; columns of outputs are not read, and outputs
@@ -128,7 +133,7 @@ impl ColumnMap {
     /// # Errors
     /// As [`Self::record`].
     pub fn run(&self, description: &Description, path: &Path) -> Result<PlantRecord, PlantError> {
-        self.rows(description, path, &[])
+        self.rows(description, &RecordText::read(path)?, &[])
     }
 
     /// [`Self::record`] with the name of its file.
@@ -140,9 +145,21 @@ impl ColumnMap {
         description: &Description,
         path: &Path,
     ) -> Result<NamedRecord, PlantError> {
+        self.record_of(description, &RecordText::read(path)?)
+    }
+
+    /// The same of a file that is read.
+    ///
+    /// # Errors
+    /// [`PlantError::Input`].
+    pub fn record_of(
+        &self,
+        description: &Description,
+        text: &RecordText,
+    ) -> Result<NamedRecord, PlantError> {
         Ok(NamedRecord {
-            name: printable_path(path),
-            record: self.record(description, path)?,
+            name: text.name.clone(),
+            record: self.rows(description, text, &description.outputs)?,
         })
     }
 
@@ -164,14 +181,13 @@ impl ColumnMap {
     fn rows(
         &self,
         description: &Description,
-        path: &Path,
+        text: &RecordText,
         outputs: &[Output],
     ) -> Result<PlantRecord, PlantError> {
-        let origin = path.display().to_string();
-        let text = read_text(path)?;
+        let origin = text.origin.clone();
         let mut reader = csv::ReaderBuilder::new()
             .trim(csv::Trim::All)
-            .from_reader(text.as_bytes());
+            .from_reader(text.text.as_bytes());
         let csv_fault = |error: csv::Error| {
             refuse(
                 &origin,
@@ -214,7 +230,59 @@ impl ColumnMap {
                 values.push(field(place, false)?);
             }
         }
-        record.prepared(description, &origin)
+        match outputs.is_empty() {
+            true => record.prepared_run(description, &origin),
+            false => record.prepared(description, &origin),
+        }
+    }
+
+    /// What is to be said of inputs where a record has no rows for a while, a sentence for each input.
+    #[must_use]
+    pub fn bridged(&self, description: &Description, named: &NamedRecord) -> Vec<String> {
+        let record = &named.record;
+        let gaps = record.gaps();
+        let told = gaps.iter().map(|row| {
+            let length_s = record.time_s[row + 1] - record.time_s[*row];
+            let length = format::short(length_s, 3);
+            format!("{length} s between rows {} and {}", row + 1, row + 2)
+        });
+        let told = few(told, GAPS_SHOWN);
+        let inputs = description.inputs.iter().filter(|_| !gaps.is_empty());
+        let words = inputs.map(|input| {
+            let scaled = self.inputs.get(&input.id).map(Source::scaled);
+            let column = scaled.map_or_else(|| input.id.clone(), |one| one.column);
+            let how = match input.interpolate {
+                true => "interpolated over gaps",
+                false => "held at its last value over gaps",
+            };
+            format!(
+                "{}: input `{}` (column `{column}`) is {how} of the rows: {told}; if it moved there, cut the record",
+                named.name, input.id
+            )
+        });
+        words.collect()
+    }
+}
+
+/// A record as its file has it, read once for any number of plants.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RecordText {
+    name: String,
+    origin: String,
+    text: String,
+}
+
+impl RecordText {
+    /// Reads the file.
+    ///
+    /// # Errors
+    /// [`PlantError::Unreadable`].
+    pub fn read(path: &Path) -> Result<Self, PlantError> {
+        Ok(Self {
+            name: printable_path(path),
+            origin: path.display().to_string(),
+            text: read_text(path)?,
+        })
     }
 }
 

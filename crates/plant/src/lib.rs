@@ -81,7 +81,7 @@ mod starts;
 mod taken_up;
 mod tape;
 
-pub use columns::ColumnMap;
+pub use columns::{ColumnMap, RecordText};
 pub use comparison::compare;
 pub use diagnosed::Diagnosed;
 pub use diagnosis::diagnose;

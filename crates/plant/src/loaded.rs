@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use gyrocal_codegen::Program;
 use gyrocal_hypothesis::Plant;
+use gyrocal_record::digest_of_text;
 use gyrocal_scalar::{Model, NamedInputs};
 
 use crate::catalogue::Catalogue;
@@ -21,6 +22,7 @@ pub struct LoadedPlant {
     pub(crate) functions: Arc<dyn Functions>,
     pub(crate) description: Arc<Description>,
     pub(crate) catalogue: Arc<Catalogue>,
+    hash: Arc<str>,
 }
 
 impl core::fmt::Debug for LoadedPlant {
@@ -49,7 +51,14 @@ impl LoadedPlant {
     pub fn parse(text: &str, origin: &str) -> Result<Self, PlantError> {
         let program = Program::from_json(text, origin)?;
         let functions = Interpreted::new(&program)?;
-        Self::of(&program, Arc::new(functions))
+        let description = Description::of(&program)?;
+        let catalogue = Catalogue::new(&description, functions.sizes().parameters);
+        Ok(Self {
+            functions: Arc::new(functions),
+            description: Arc::new(description),
+            catalogue: Arc::new(catalogue),
+            hash: digest_of_text(text).into(),
+        })
     }
 
     /// The same plant with other functions, such as generated ones.
@@ -89,14 +98,10 @@ impl LoadedPlant {
         self.with_functions(Arc::new(Generated::new(model, noises)))
     }
 
-    fn of(program: &Program, functions: Arc<dyn Functions>) -> Result<Self, PlantError> {
-        let description = Description::of(program)?;
-        let catalogue = Catalogue::new(&description, functions.sizes().parameters);
-        Ok(Self {
-            functions,
-            description: Arc::new(description),
-            catalogue: Arc::new(catalogue),
-        })
+    /// SHA-256 of the text of the program, in hexadecimal.
+    #[must_use]
+    pub fn hash(&self) -> &str {
+        &self.hash
     }
 
     /// States, parameters, inputs and outputs.

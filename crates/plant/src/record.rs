@@ -2,7 +2,9 @@
 
 use core::ops::Range;
 
-use gyrocal_statistics::median_interval_s;
+use gyrocal_record::counted;
+use gyrocal_statistics::format::short;
+use gyrocal_statistics::{median_interval_s, quantile};
 
 use crate::description::Description;
 use crate::error::PlantError;
@@ -14,6 +16,17 @@ const SEARCH_INTERVAL_S: f64 = 60.0;
 /// Distance between the clocks of two records that are joined, in usual intervals between rows: to every
 /// test a gap.
 const GAP_INTERVALS: f64 = 10.0;
+
+/// Interval between rows, in usual ones, from which on inputs between them are told as unknown: where charts leave a
+/// line open.
+const OPEN_INTERVALS: f64 = 4.0;
+
+/// Rows beyond the unknowns, which the noise is told from.
+const ROWS_FOR_NOISE: usize = 8;
+
+/// Most that an input may be over what 19 of 20 of its values that are not zero stay below. No simulation that goes
+/// through a larger one resolves the others, and steps are halved for it without an end.
+const MOST_OVER_USUAL: f64 = 1e6;
 
 /// Rows of inputs, outputs and logged quantities, of one record or of several that are joined.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -144,6 +157,42 @@ impl PlantRecord {
         all
     }
 
+    /// Rows after which there are none for longer than usual.
+    pub(crate) fn gaps(&self) -> Vec<usize> {
+        let usual_s = median_interval_s(&self.time_s);
+        let pairs = self.time_s.windows(2).enumerate();
+        let long = pairs.filter(|(_, pair)| pair[1] - pair[0] > OPEN_INTERVALS * usual_s);
+        long.map(|(row, _)| row).collect()
+    }
+
+    /// Refuses fewer rows than are needed.
+    fn refuse_fewer(&self, needed: usize, why: &str, origin: &str) -> Result<(), PlantError> {
+        if self.len() >= needed {
+            return Ok(());
+        }
+        Err(PlantError::Input {
+            origin: origin.to_owned(),
+            problem: format!(
+                "it has {}, and {needed} are needed: {why}",
+                counted(self.len(), "row")
+            ),
+            advice: "give a longer record".to_owned(),
+        })
+    }
+
+    /// Place and usual size of a value of an input that is beyond all measure, if there is one.
+    fn absurd_input(&self, inputs: usize) -> Option<(usize, f64)> {
+        (0..inputs).find_map(|input| {
+            let own = || self.inputs.iter().enumerate().skip(input).step_by(inputs);
+            let sizes = own().map(|(_, value)| value.abs());
+            let sizes: Vec<f64> = sizes.filter(|size| *size > 0.0).collect();
+            let usual = quantile(&sizes, 0.95);
+            let mut own = own();
+            let found = own.find(|(_, value)| value.abs() > MOST_OVER_USUAL * usual);
+            found.map(|(place, _)| (place, usual))
+        })
+    }
+
     /// Time of the search over time.
     pub(crate) fn search_scale(&self) -> f64 {
         SEARCH_INTERVAL_S / median_interval_s(&self.time_s)
@@ -152,9 +201,30 @@ impl PlantRecord {
     /// The record with outputs missing where they saturate, and regressors about their means.
     ///
     /// # Errors
-    /// [`PlantError::Input`] if a length is wrong, time does not rise, an input is not a number, or an
-    /// output has no value.
-    pub fn prepared(mut self, description: &Description, origin: &str) -> Result<Self, PlantError> {
+    /// [`PlantError::Input`] if a length is wrong, there are too few rows for a fit, time does not rise, an input is not
+    /// a number or beyond all measure, or an output has no value.
+    pub fn prepared(self, description: &Description, origin: &str) -> Result<Self, PlantError> {
+        let (states, parameters) = (description.states.len(), description.parameters.len());
+        let why = format!(
+            "{} and {} are estimated, and {ROWS_FOR_NOISE} further rows tell the noise",
+            counted(parameters, "parameter"),
+            counted(states, "initial state"),
+        );
+        self.refuse_fewer(states + parameters + ROWS_FOR_NOISE, &why, origin)?;
+        self.checked(description, origin)
+    }
+
+    /// The same of a run that is simulated, and not fitted.
+    pub(crate) fn prepared_run(
+        self,
+        description: &Description,
+        origin: &str,
+    ) -> Result<Self, PlantError> {
+        self.refuse_fewer(2, "a simulation goes from one row to the next", origin)?;
+        self.checked(description, origin)
+    }
+
+    fn checked(mut self, description: &Description, origin: &str) -> Result<Self, PlantError> {
         let rows = self.len();
         let (inputs, outputs) = (description.inputs.len(), description.outputs.len());
         let refuse = |problem: String, advice: &str| PlantError::Input {
@@ -170,14 +240,6 @@ impl PlantRecord {
             let advice = "give every row each input, output and regressor of the plant";
             return Err(refuse("columns of different lengths".to_owned(), advice));
         }
-        let unknowns = description.states.len() + description.parameters.len();
-        if rows < unknowns + 8 {
-            let advice = "a longer record is needed";
-            return Err(refuse(
-                format!("{rows} rows for {unknowns} unknowns"),
-                advice,
-            ));
-        }
         if let Some(row) = (1..rows).find(|row| self.time_s[*row] <= self.time_s[row - 1]) {
             let advice = "remove repeated rows and sort by time";
             return Err(refuse(
@@ -189,6 +251,16 @@ impl PlantRecord {
             let name = &description.inputs[place % inputs].id;
             let problem = format!("input `{name}` has no value in row {}", place / inputs + 1);
             return Err(refuse(problem, "fill the gap, or cut the record there"));
+        }
+        if let Some((place, usual)) = self.absurd_input(inputs) {
+            let name = &description.inputs[place % inputs].id;
+            let [value, usual] = [self.inputs[place], usual].map(|one| short(one, 3));
+            let row = place / inputs + 1;
+            let problem = format!(
+                "input `{name}` is {value} in row {row}, and 19 of 20 of its values are within {usual}"
+            );
+            let advice = "correct the value, or cut the record there: no simulation resolves both";
+            return Err(refuse(problem, advice));
         }
         for (index, output) in description.outputs.iter().enumerate() {
             let own = self.outputs.iter_mut().skip(index).step_by(outputs);

@@ -94,7 +94,7 @@ impl Axes {
         Ok(Input {
             path: format!("<{name}>"),
             sha256: digest.iter().map(|byte| format!("{byte:02x}")).collect(),
-            role: None,
+            ..Input::default()
         })
     }
 }

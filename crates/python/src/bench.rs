@@ -18,14 +18,14 @@ pub(crate) struct HeldBench {
 impl HeldBench {
     /// Takes a bench description in memory.
     pub(crate) fn of_memory(text: &str, name: &str) -> Outcome<Self> {
-        Ok(Self {
-            bench: Bench::parse(text, name)?,
-            input: Input {
-                path: name.to_owned(),
-                sha256: hash(text.as_bytes()),
-                role: None,
-            },
-        })
+        let bench = Bench::parse(text, name)?;
+        let input = Input {
+            path: name.to_owned(),
+            sha256: hash(text.as_bytes()),
+            role: None,
+            identification: bench.identification.clone(),
+        };
+        Ok(Self { bench, input })
     }
 
     fn text(&self) -> Outcome<String> {
@@ -39,10 +39,12 @@ impl HeldBench {
     #[staticmethod]
     fn read(path: PathBuf) -> PyResult<Self> {
         let read = || -> Outcome<Self> {
-            Ok(Self {
-                bench: Bench::read(&path)?,
-                input: Input::of(&path)?,
-            })
+            let bench = Bench::read(&path)?;
+            let input = Input {
+                identification: bench.identification.clone(),
+                ..Input::of(&path)?
+            };
+            Ok(Self { bench, input })
         };
         Ok(read()?)
     }

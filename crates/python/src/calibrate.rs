@@ -17,7 +17,7 @@ use pyo3::prelude::*;
 
 use crate::axes::{Axes, GivenAxes};
 use crate::bench::HeldBench;
-use crate::diagnose::Given;
+use crate::diagnose::{Given, of_effects};
 use crate::error::{Class, Failure, Outcome};
 use crate::origin::{json, manifest};
 use crate::record::HeldRecord;
@@ -343,9 +343,7 @@ fn with_effects(
         ));
     }
     let fitted = fit_effects(run, axes, &request.effects, &DiagnoseOptions::default());
-    fitted.map(Some).map_err(|error| Failure {
-        message: format!("effects: {error}"),
-        advice: Some("`diagnose` finds which effects the record shows".to_owned()),
-        ..Failure::default()
+    fitted.map(Some).map_err(|error| {
+        of_effects(&error).unwrap_or_else(|| Failure::of_text(&format!("effects: {error}")))
     })
 }

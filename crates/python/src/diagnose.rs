@@ -49,9 +49,32 @@ impl<'a> Given<'a> {
     }
 
     pub(crate) fn no_diagnosis(&self, source: DiagnosisError) -> Failure {
+        if let Some(failure) = of_effects(&source) {
+            return failure;
+        }
         let path = self.record.input.path.as_ref();
         Failure::of_work(&NotDiagnosed::new(path, &self.bench.bench, source))
     }
+}
+
+/// The failure of the argument `effects`; `None` if the error is another one.
+pub(crate) fn of_effects(error: &DiagnosisError) -> Option<Failure> {
+    let found = match error {
+        DiagnosisError::UnknownEffect { id, .. } => id,
+        DiagnosisError::Unavailable { effect, .. }
+        | DiagnosisError::NotTogether { effect, .. }
+        | DiagnosisError::NoTerm { effect } => *effect,
+        _ => return None,
+    };
+    Some(Failure {
+        message: format!("effects: {error}"),
+        found: Some(found.to_owned()),
+        expected: Some("effects of the catalogue that the record can show".to_owned()),
+        advice: Some(
+            "`gyrocal effects` lists them; `diagnose` finds which the record shows".to_owned(),
+        ),
+        ..Failure::default()
+    })
 }
 
 /// The result (JSON) and the scores of the record as bytes, of a record that was searched.

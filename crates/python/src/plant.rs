@@ -148,9 +148,9 @@ impl HeldPlant {
         let inputs = inputs.into_iter().map(|(path, sha256)| Input {
             path,
             sha256,
-            role: None,
+            ..Input::default()
         });
-        let manifest = manifest("", options.seed, inputs.collect(), command);
+        let manifest = manifest(self.plant.hash(), options.seed, inputs.collect(), command);
         Ok(py.detach(|| self.answer(record, later, &options, manifest))?)
     }
 }

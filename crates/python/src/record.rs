@@ -29,7 +29,7 @@ impl HeldRecord {
             input: Input {
                 path: name.to_owned(),
                 sha256: hash(&record),
-                role: None,
+                ..Input::default()
             },
             file: RecordFile::of_record(record, name),
         })

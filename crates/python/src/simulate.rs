@@ -59,7 +59,7 @@ fn scenario(path: Option<PathBuf>, tables: Option<&str>) -> Outcome<(Scenario, I
     let input = Input {
         path: name.to_owned(),
         sha256: digest.iter().map(|byte| format!("{byte:02x}")).collect(),
-        role: None,
+        ..Input::default()
     };
     Ok((Scenario::parse(&text, name)?, input))
 }

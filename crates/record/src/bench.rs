@@ -1,5 +1,6 @@
 //! The bench description.
 
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -15,6 +16,9 @@ use crate::white_noise::WhiteNoise;
 /// Description of the bench: site, initial attitude, noise, and prior of the coefficients.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bench {
+    /// What identifies unit and run, by its key: serial number, operator, date and whatever else the file tells.
+    /// Nothing is computed from it.
+    pub identification: BTreeMap<String, String>,
     /// Astronomic latitude, north positive.
     pub latitude_deg: f64,
     /// Local gravity and the accelerometers' unit, when they differ.
@@ -136,6 +140,7 @@ impl Bench {
                     })?,
             };
             Ok(Self {
+                identification: root.facts(IDENTIFICATION)?,
                 latitude_deg: site.latitude_deg,
                 gravity: site.gravity,
                 uncertainty: SiteUncertainty::from_site(&site_table)?,
@@ -186,12 +191,26 @@ impl Bench {
             text.push_str(&self.prior.to_toml());
         }
         text.push_str(&self.gimbal_limits.to_toml());
+        if !self.identification.is_empty() {
+            let _ = writeln!(text, "\n[{IDENTIFICATION}]");
+            text.push_str(&toml::to_string(&self.identification).unwrap_or_default());
+        }
         text
     }
 }
 
 /// Tables of a bench file.
-const KNOWN: [&str; 5] = ["site", "platform", "noise", "prior", GimbalLimits::TABLE];
+const KNOWN: [&str; 6] = [
+    "site",
+    "platform",
+    "noise",
+    "prior",
+    GimbalLimits::TABLE,
+    IDENTIFICATION,
+];
+
+/// The table that takes any key.
+const IDENTIFICATION: &str = "identification";
 
 /// Value of [`Bench::initial_angles_sigma_deg`] for unknown angles.
 const UNKNOWN_ANGLES_SIGMA_DEG: [f64; 3] = [180.0; 3];

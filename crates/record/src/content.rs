@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Cursor, Read};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use encoding_rs::Encoding;
@@ -17,6 +18,11 @@ use crate::error::{Error, unreadable};
 /// First bytes of gzip and of Zstandard.
 const GZIP: &[u8] = &[0x1f, 0x8b];
 const ZSTANDARD: &[u8] = &[0x28, 0xb5, 0x2f, 0xfd];
+
+/// Sizes above which a compressed file is no measurement but a way to fill the memory: content of this size, that
+/// is this many times larger than the file. Records come to 3 to 10 times, one that repeats a reading to some ten.
+const LARGE_MIB: u64 = 64;
+const LARGE_RATIO: u64 = 100;
 
 /// What this process knows of the files that it has opened.
 static OPENED: Mutex<Opened> = Mutex::new(Opened {
@@ -46,7 +52,8 @@ pub fn keep_streams() {
 ///
 /// # Errors
 ///
-/// [`Error::Unreadable`]; of a stream too, unless [`keep_streams`] was called.
+/// [`Error::Unreadable`]; of a stream too, unless [`keep_streams`] was called; and while a compressed file is read,
+/// if its content has more than 64 MiB and more than 100 times its size.
 pub fn open_content(path: &Path) -> Result<Box<dyn BufRead>, Error> {
     open(path).map_err(unreadable(path))
 }
@@ -92,6 +99,17 @@ pub fn read_content(path: &Path) -> Result<Vec<u8>, Error> {
     Ok(bytes)
 }
 
+/// SHA-256 of a text in hexadecimal.
+#[must_use]
+pub fn digest_of_text(text: &str) -> String {
+    hexadecimal(Sha256::new_with_prefix(text))
+}
+
+fn hexadecimal(digest: Sha256) -> String {
+    let digest = digest.finalize();
+    digest.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
 /// SHA-256 of a file in hexadecimal: of the bytes that were read last, if they were all, else of those that it has
 /// now.
 pub(crate) fn digest_of(path: &Path) -> Result<String, Error> {
@@ -105,16 +123,22 @@ pub(crate) fn digest_of(path: &Path) -> Result<String, Error> {
 }
 
 fn open(path: &Path) -> io::Result<Box<dyn BufRead>> {
-    let mut file = BufReader::new(raw(path)?);
+    let file = raw(path)?;
+    let compressed = file.count.clone();
+    let mut file = BufReader::new(file);
     let first = file.fill_buf()?;
-    if first.starts_with(GZIP) {
-        return Ok(Box::new(BufReader::new(MultiGzDecoder::new(file))));
-    }
-    if first.starts_with(ZSTANDARD) {
-        let decoder = StreamingDecoder::new(file).map_err(io::Error::other)?;
-        return Ok(Box::new(BufReader::new(decoder)));
-    }
-    Ok(Box::new(file))
+    let decoder: Box<dyn Read> = if first.starts_with(GZIP) {
+        Box::new(MultiGzDecoder::new(file))
+    } else if first.starts_with(ZSTANDARD) {
+        Box::new(StreamingDecoder::new(file).map_err(io::Error::other)?)
+    } else {
+        return Ok(Box::new(file));
+    };
+    Ok(Box::new(BufReader::new(Decompressed {
+        decoder,
+        compressed,
+        count: 0,
+    })))
 }
 
 /// Opens a file as it is stored.
@@ -127,6 +151,7 @@ fn raw(path: &Path) -> io::Result<Hashed> {
     Ok(Hashed {
         path: path.to_owned(),
         source,
+        count: Arc::default(),
         digest: Some(Sha256::new()),
     })
 }
@@ -157,6 +182,8 @@ fn opened() -> MutexGuard<'static, Opened> {
 struct Hashed {
     path: PathBuf,
     source: Box<dyn Read>,
+    /// Bytes that were read.
+    count: Arc<AtomicU64>,
     /// `None` after its end.
     digest: Option<Sha256>,
 }
@@ -164,6 +191,7 @@ struct Hashed {
 impl Read for Hashed {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let count = self.source.read(buffer)?;
+        self.count.fetch_add(count as u64, Ordering::Relaxed);
         if let Some(digest) = &mut self.digest {
             digest.update(&buffer[..count]);
         }
@@ -171,9 +199,32 @@ impl Read for Hashed {
             && !buffer.is_empty()
             && let Some(digest) = self.digest.take()
         {
-            let digest = digest.finalize();
-            let digest = digest.iter().map(|byte| format!("{byte:02x}")).collect();
+            let digest = hexadecimal(digest);
             opened().digests.insert(self.path.clone(), digest);
+        }
+        Ok(count)
+    }
+}
+
+/// The content of a compressed file, which ends in an error where it is far larger than the file.
+struct Decompressed {
+    decoder: Box<dyn Read>,
+    /// Bytes of the file that were read.
+    compressed: Arc<AtomicU64>,
+    count: u64,
+}
+
+impl Read for Decompressed {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let count = self.decoder.read(buffer)?;
+        self.count += count as u64;
+        let ratio = self.count / self.compressed.load(Ordering::Relaxed).max(1);
+        let mib = self.count >> 20;
+        if mib >= LARGE_MIB && ratio >= LARGE_RATIO {
+            return Err(io::Error::other(format!(
+                "it is compressed, and its first {mib} MiB are {ratio} times as large as what they are kept in, expected \
+                 less than {LARGE_RATIO} times: decompress it first if it is a record (gzip -d, zstd -d)"
+            )));
         }
         Ok(count)
     }
@@ -195,6 +246,47 @@ mod tests {
             encoder.finish().unwrap();
         }
         assert_eq!(read_content(&path).unwrap(), b"a,b\n1,2\n");
+    }
+
+    #[test]
+    fn a_compressed_file_that_fills_the_memory_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("log.csv.gz");
+        let mut seed = 1_u32;
+        let mut noise = || {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (seed >> 24) as u8
+        };
+        let mib = |count: usize, byte: &mut dyn FnMut() -> u8| -> Vec<u8> {
+            (0..count << 20).map(|_| byte()).collect()
+        };
+        // A long content, and one that is a hundred times as large as its file, are records; both together are none.
+        let mut zeros = || b'0';
+        let plain = [mib(1, &mut noise), mib(70, &mut zeros)].concat();
+        for (content, is_read) in [
+            (plain, true),
+            (mib(60, &mut zeros), true),
+            (mib(70, &mut zeros), false),
+        ] {
+            let file = File::create(&path).unwrap();
+            let mut encoder = flate2::write::GzEncoder::new(file, flate2::Compression::fast());
+            encoder.write_all(&content).unwrap();
+            encoder.finish().unwrap();
+            match read_content(&path) {
+                Ok(read) => assert!(is_read && read == content),
+                Err(error) => {
+                    let error = error.to_string();
+                    assert!(!is_read, "{error}");
+                    for words in [
+                        "its first 64 MiB are ",
+                        "expected less than 100 times",
+                        "gzip -d",
+                    ] {
+                        assert!(error.contains(words), "{error}");
+                    }
+                }
+            }
+        }
     }
 
     #[test]

@@ -106,6 +106,10 @@ impl Diagnostic for Error {
     fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
         let advice = match self {
             Self::Input(error) => return error.help(),
+            // The reason has the advice, or the decoder knows none.
+            Self::Unreadable { reason, .. } if reason.kind() == std::io::ErrorKind::Other => {
+                return None;
+            }
             Self::Unreadable { .. } => "check that the file exists and that you may read it",
             Self::Unwritable { .. } => {
                 "check that the folder exists, that you may write there and that the disk has room"

@@ -85,13 +85,16 @@ mod source;
 mod suggest;
 mod swapped;
 mod table;
+mod temporary;
 mod white_noise;
 mod words;
 
 pub use bench::{Bench, Prior};
 pub use bound::Bound;
 pub use clock::{ClockFault, UNNAMED, restarts};
-pub use content::{is_encoding, keep_streams, open_content, open_text, read_content};
+pub use content::{
+    digest_of_text, is_encoding, keep_streams, open_content, open_text, read_content,
+};
 pub use document::Document;
 pub use error::{Error, InputError, InputErrorKind};
 pub use extension_report::{ExtensionReport, LeftOut};
@@ -102,7 +105,7 @@ pub use manifest::{Input, InputRole, Manifest};
 pub use model_file::{Gyros, KnownEffect, ModelFile, ParameterEstimate, Standing};
 pub use module_name::module_name;
 pub use noise_ratio::{NoiseDifference, NoiseEstimate, NoiseRatio};
-pub use output::{Outputs, write_json, write_whole};
+pub use output::{Outputs, file_behind, write_json, write_whole};
 pub use plausible::most_equal;
 pub use printable::{printable, printable_line, printable_path, shell_quoted};
 pub use record::Record;

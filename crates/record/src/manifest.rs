@@ -1,5 +1,6 @@
 //! Origin of a result.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
@@ -26,7 +27,7 @@ pub struct Manifest {
 }
 
 /// A file that was read.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Input {
     /// The path as it was given.
@@ -36,6 +37,9 @@ pub struct Input {
     /// What it is to the command, where a next command needs it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub role: Option<InputRole>,
+    /// `[identification]` of a bench file.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub identification: BTreeMap<String, String>,
 }
 
 /// What a file is to the command that reads it.
@@ -71,7 +75,7 @@ impl Input {
         Ok(Self {
             path: path.display().to_string(),
             sha256: digest_of(path)?,
-            role: None,
+            ..Self::default()
         })
     }
 

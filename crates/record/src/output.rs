@@ -5,18 +5,30 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
-use tempfile::{Builder, NamedTempFile};
+use tempfile::NamedTempFile;
 
 use crate::error::{Error, unwritable};
+use crate::temporary::{TemporaryFolder, file_in, folder_in};
 
 /// Some output files that appear together.
 ///
 /// [`stage`](Self::stage) writes each beside its target under a temporary name;
 /// [`commit`](Self::commit) renames them. Until then nothing that exists is touched, and a
-/// failure or a drop leaves nothing behind.
+/// failure or a drop leaves nothing behind. What a killed run left is removed by the next one that
+/// writes there. A file that is replaced keeps its rights.
 #[derive(Debug, Default)]
 pub struct Outputs {
     staged: Vec<Staged>,
+    folders: Vec<NewFolder>,
+    /// Folders that were made around the new ones, from the outermost.
+    around: Vec<PathBuf>,
+}
+
+/// A folder that appears with all that is in it.
+#[derive(Debug)]
+struct NewFolder {
+    temporary: TemporaryFolder,
+    target: PathBuf,
 }
 
 #[derive(Debug)]
@@ -27,6 +39,8 @@ enum Staged {
     },
     /// A pipe or device, which cannot be replaced by renaming and must not be.
     Stream { content: Vec<u8>, target: PathBuf },
+    /// A file of an earlier run that this one does not write.
+    Outdated(PathBuf),
 }
 
 impl Outputs {
@@ -42,9 +56,24 @@ impl Outputs {
     ///
     /// [`Error::Unwritable`] if that is not possible.
     pub fn stage(&mut self, path: &Path, content: &[u8]) -> Result<(), Error> {
-        let staged = stage(path, content).map_err(unwritable(path))?;
+        let staged = self.staged(path, content).map_err(unwritable(path))?;
         self.staged.push(staged);
         Ok(())
+    }
+
+    /// Has a folder for files that are staged after it. If it does not exist, it appears with all of them.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Unwritable`] if it cannot be made.
+    pub fn folder(&mut self, path: &Path) -> Result<(), Error> {
+        self.new_folder(path).map_err(unwritable(path))
+    }
+
+    /// Removes a file, if it is there, together with the appearance of the others: what an earlier run wrote, and
+    /// this one has nothing for.
+    pub fn remove(&mut self, path: &Path) {
+        self.staged.push(Staged::Outdated(file_behind(path)));
     }
 
     /// Gives all files their names.
@@ -52,19 +81,82 @@ impl Outputs {
     /// # Errors
     ///
     /// [`Error::Unwritable`] if a file cannot be given its name; those after it do not appear.
-    pub fn commit(self) -> Result<(), Error> {
-        for staged in self.staged {
+    pub fn commit(mut self) -> Result<(), Error> {
+        for staged in std::mem::take(&mut self.staged) {
             match staged {
                 Staged::File { temporary, target } => {
-                    let persisted = temporary.persist(&target);
+                    let persisted = temporary.persist(self.place_of(&target));
                     persisted.map_err(|error| unwritable(&target)(error.error))?;
                 }
                 Staged::Stream { content, target } => {
                     write_stream(&target, &content).map_err(unwritable(&target))?;
                 }
+                Staged::Outdated(target) if target.is_file() => {
+                    fs::remove_file(&target).map_err(unwritable(&target))?;
+                }
+                Staged::Outdated(_) => {}
             }
         }
+        for NewFolder { temporary, target } in std::mem::take(&mut self.folders) {
+            fs::rename(temporary.folder.path(), &target).map_err(unwritable(&target))?;
+        }
+        self.around.clear();
         Ok(())
+    }
+
+    fn new_folder(&mut self, path: &Path) -> io::Result<()> {
+        let target = file_behind(path);
+        if target.is_dir() || self.place_of(&target) != target {
+            return Ok(());
+        }
+        if target.exists() {
+            return Err(io::Error::from(io::ErrorKind::AlreadyExists));
+        }
+        let parent = parent(&target);
+        let missing = parent.ancestors().take_while(|folder| !folder.exists());
+        let missing: Vec<_> = missing.map(Path::to_owned).collect();
+        fs::create_dir_all(parent)?;
+        self.around.extend(missing.into_iter().rev());
+        let temporary = folder_in(parent)?;
+        self.folders.push(NewFolder { temporary, target });
+        Ok(())
+    }
+
+    /// Where a file is until the commit: within a new folder, or at its own place.
+    fn place_of(&self, target: &Path) -> PathBuf {
+        let within = self.folders.iter().find_map(|folder| {
+            let rest = target.strip_prefix(&folder.target).ok()?;
+            Some(folder.temporary.folder.path().join(rest))
+        });
+        within.unwrap_or_else(|| target.to_owned())
+    }
+
+    fn staged(&self, path: &Path, content: &[u8]) -> io::Result<Staged> {
+        // A link is followed: what it points to is replaced, not the link.
+        let target = file_behind(path);
+        let replaced = fs::metadata(&target).ok();
+        if let Some(replaced) = &replaced {
+            if replaced.is_dir() {
+                return Err(io::Error::from(io::ErrorKind::IsADirectory));
+            }
+            if !replaced.is_file() {
+                let content = content.to_vec();
+                return Ok(Staged::Stream { content, target });
+            }
+            // Renaming needs no right to write the file itself; ask for it all the same.
+            File::options().append(true).open(&target)?;
+        }
+        let place = self.place_of(&target);
+        let folder = parent(&place);
+        if place != target {
+            fs::create_dir_all(folder)?;
+        }
+        // The temporary name in tempfile's own message would only confuse.
+        let mut temporary =
+            file_in(folder, replaced.as_ref()).map_err(|error| io::Error::from(error.kind()))?;
+        temporary.write_all(content)?;
+        temporary.as_file().sync_all()?;
+        Ok(Staged::File { temporary, target })
     }
 
     /// Stages a result as JSON with a line break at its end.
@@ -74,6 +166,17 @@ impl Outputs {
     /// [`Error::Unwritable`] if that is not possible.
     pub fn stage_json<T: Serialize>(&mut self, path: &Path, value: &T) -> Result<(), Error> {
         self.stage(path, &json_bytes(path, value)?)
+    }
+}
+
+impl Drop for Outputs {
+    fn drop(&mut self) {
+        self.staged.clear();
+        self.folders.clear();
+        for folder in self.around.iter().rev() {
+            // One that others have put files into stays.
+            let _ = fs::remove_dir(folder);
+        }
     }
 }
 
@@ -104,41 +207,21 @@ fn json_bytes<T: Serialize>(path: &Path, value: &T) -> Result<Vec<u8>, Error> {
     Ok(content)
 }
 
-fn stage(path: &Path, content: &[u8]) -> io::Result<Staged> {
-    // A link is followed: what it points to is replaced, not the link.
-    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-    if let Ok(metadata) = fs::metadata(&target) {
-        if metadata.is_dir() {
-            return Err(io::Error::from(io::ErrorKind::IsADirectory));
-        }
-        if !metadata.is_file() {
-            let content = content.to_vec();
-            return Ok(Staged::Stream { content, target });
-        }
-        // Renaming needs no right to write the file itself; ask for it all the same.
-        File::options().append(true).open(&target)?;
+/// The file behind a path, whether it or its folders exist or not: links are followed.
+#[must_use]
+pub fn file_behind(path: &Path) -> PathBuf {
+    if let Ok(whole) = path.canonicalize() {
+        return whole;
     }
-    let folder = match target.parent() {
-        Some(folder) if folder != Path::new("") => folder,
-        _ => Path::new("."),
-    };
-    // The temporary name in tempfile's own message would only confuse.
-    let mut temporary = new_temporary(folder).map_err(|error| io::Error::from(error.kind()))?;
-    temporary.write_all(content)?;
-    temporary.as_file().sync_all()?;
-    Ok(Staged::File { temporary, target })
+    match path.file_name() {
+        Some(name) => file_behind(parent(path)).join(name),
+        None => path.to_owned(),
+    }
 }
 
-fn new_temporary(folder: &Path) -> io::Result<NamedTempFile> {
-    let mut builder = Builder::new();
-    builder.prefix(".gyrocal-").suffix(".tmp");
-    // Temporary files are private by default; the result has the rights of any new file.
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        builder.permissions(fs::Permissions::from_mode(0o666));
-    }
-    builder.tempfile_in(folder)
+fn parent(path: &Path) -> &Path {
+    let parent = path.parent().filter(|folder| *folder != Path::new(""));
+    parent.unwrap_or(Path::new("."))
 }
 
 fn write_stream(target: &Path, content: &[u8]) -> io::Result<()> {

@@ -11,11 +11,11 @@ use crate::plausible::{Codes, check_norms, refuse_too_few};
 use crate::record::Record;
 use crate::source::{SourceText, quoted};
 
-/// Longest record, s: a hundred years. Longer ones are mistakes in the unit of time, and take long
-/// to integrate.
-const LONGEST_S: f64 = 3.16e9;
-
 impl Record {
+    /// Longest record, s: a hundred years. Longer ones are mistakes in the unit of time, and take long
+    /// to integrate.
+    pub const LONGEST_S: f64 = 3.16e9;
+
     /// Reads a record.
     ///
     /// # Errors
@@ -145,7 +145,7 @@ fn check_times(record: &Record, source: &SourceText, places: &[Range<usize>]) ->
         return error(fault.row, fault.found, "times that rise", &fault.advice);
     }
     let first_s = record.time_s.first().copied().unwrap_or(0.0);
-    let is_late = |time_s: &f64| time_s - first_s > LONGEST_S;
+    let is_late = |time_s: &f64| time_s - first_s > Record::LONGEST_S;
     match record.time_s.iter().position(is_late) {
         Some(row) => error(
             row,

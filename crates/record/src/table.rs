@@ -1,5 +1,7 @@
 //! TOML tables, read key by key with located errors.
 
+mod facts;
+
 use std::collections::BTreeSet;
 use std::ops::Range;
 
@@ -76,20 +78,27 @@ impl<'a> Table<'a> {
     ///
     /// [`Error::Input`] if it is no table or has an unknown key.
     pub fn optional_table(&self, key: &str, known: &[&str]) -> Result<Option<Table<'a>>, Error> {
+        let table = self.free_table(key)?;
+        if let Some(table) = &table {
+            table.refuse_unknown(known)?;
+        }
+        Ok(table)
+    }
+
+    /// A table inside this one with any keys.
+    fn free_table(&self, key: &str) -> Result<Option<Table<'a>>, Error> {
         let Some((key_span, value)) = self.entry(key) else {
             return Ok(None);
         };
         let Some(entries) = value.get_ref().as_table() else {
             return Err(self.wrong_type(value, &format!("a table `[{key}]`")));
         };
-        let table = Table {
+        Ok(Some(Table {
             source: self.source,
             name: key.to_owned(),
             entries,
             span: key_span,
-        };
-        table.refuse_unknown(known)?;
-        Ok(Some(table))
+        }))
     }
 
     /// A number.

@@ -16,6 +16,8 @@ pub struct WhiteNoise {
 impl WhiteNoise {
     /// Name of the table.
     pub const TABLE: &'static str = "noise";
+    /// Its keys.
+    pub const KEYS: [&'static str; 2] = ["accel_g", "gyro_deg_per_h"];
 
     /// Takes the table of a file.
     ///
@@ -23,10 +25,10 @@ impl WhiteNoise {
     ///
     /// [`Error::Input`] if the table or a value is absent or not positive.
     pub fn from_root(root: &Table<'_>) -> Result<Self, Error> {
-        let noise = root.table(Self::TABLE, &["accel_g", "gyro_deg_per_h"])?;
+        let noise = root.table(Self::TABLE, &Self::KEYS)?;
         Ok(Self {
-            accel_g: noise.number("accel_g", Bound::Positive)?,
-            gyro_deg_per_h: noise.number("gyro_deg_per_h", Bound::Positive)?,
+            accel_g: noise.number(Self::KEYS[0], Bound::Positive)?,
+            gyro_deg_per_h: noise.number(Self::KEYS[1], Bound::Positive)?,
         })
     }
 }

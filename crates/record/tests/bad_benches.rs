@@ -30,6 +30,29 @@ fn the_good_one_is_good() {
     assert_eq!(prior.g_sigma_deg_per_h_per_g, [1.0; 3]);
 }
 
+#[test]
+fn what_identifies_a_run_is_kept_as_it_is_written() {
+    let text = format!(
+        "{GOOD}[identification]\nunit = \"P-7\"\nserial_numbers = [\"A 1\", 0x2A]\nmass_kg = 7.50\n\
+         date = 2026-03-01\nstart = 2026-03-01T08:05:00+01:00\n\"Prüfer\" = \"<b>\"\nacel_g = 1\n"
+    );
+    let bench = Bench::parse(&text, "b.toml").unwrap();
+    let facts = bench.identification.iter();
+    let facts: Vec<_> = facts.map(|(key, value)| format!("{key}={value}")).collect();
+    let expected = [
+        "Prüfer=<b>",
+        "acel_g=1",
+        "date=2026-03-01",
+        "mass_kg=7.50",
+        "serial_numbers=A 1, 0x2A",
+        "start=2026-03-01T08:05:00+01:00",
+        "unit=P-7",
+    ];
+    assert_eq!(facts, expected);
+    let again = Bench::parse(&bench.to_toml("b.toml".as_ref()).unwrap(), "c.toml");
+    assert_eq!(again.unwrap(), bench);
+}
+
 /// What is written, what in its place, the kind of the mistake, its place, and words of what was found and
 /// of what was expected.
 const MISTAKES: &str = r#"
@@ -63,6 +86,10 @@ const MISTAKES: &str = r#"
     [noise] | [prior]\nbias_sigma_deg_per_h = -1\n[noise] | OutOfRange | 7:24 | `-1` | greater than 0
     [noise] | [gimbal_limits_deg]\ny = [60, -60]\n[noise] | OutOfRange | 7:5 | `[60, -60]` | the lower end first
     [noise] | [gimbal_limits_deg]\nx = 60\n[noise] | WrongType | 7:5 | `60` | two numbers `[from, to]`
+    [noise] | [identification.unit]\nname = 1\n[noise] | WrongType | 6:1 | `[identification.unit]` | a text, a number, a date
+    [noise] | [identification]\nheated = true\n[noise] | WrongType | 7:10 | `true` | a text, a number, a date
+    [site] | identification = "P-7"\n[site] | WrongType | 1:18 | `"P-7"` | a table `[identification]`
+    [noise] | [identificaton]\n[noise] | UnknownKey | 6:2 | `identificaton` | `identification`
     [noise] | [noise]\naccel_g = 1e-5 | Syntax | 8:1 | `accel_g` | duplicate key
 "#;
 

@@ -2,6 +2,7 @@
 
 #![cfg(test)]
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
@@ -103,6 +104,7 @@ fn a_record_that_no_one_could_read_is_not_written() {
 
 fn bench() -> Bench {
     Bench {
+        identification: BTreeMap::new(),
         latitude_deg: -33.25,
         gravity: None,
         uncertainty: SiteUncertainty::default(),
@@ -120,7 +122,15 @@ fn bench() -> Bench {
 fn a_bench_is_read_as_it_was_written() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("bench.toml");
+    let facts = [
+        ("serial number", "\"7\" \\ ü"),
+        ("date", "2026-03-01"),
+        ("note", "a\nb"),
+    ];
     let full = Bench {
+        identification: facts
+            .map(|(key, value)| (key.to_owned(), value.to_owned()))
+            .into(),
         gravity: Some(Gravity {
             local_m_per_s2: 9.796_1,
             unit_m_per_s2: 9.806_65,
@@ -351,6 +361,54 @@ fn outputs_have_the_rights_of_new_files_and_links_stay() {
     write_whole(&link, b"2").unwrap();
     assert!(link.is_symlink());
     assert_eq!(fs::read_to_string(&ours).unwrap(), "2");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_file_that_is_replaced_keeps_its_rights() {
+    use std::os::unix::fs::PermissionsExt as _;
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("private");
+    // Less and more than a new file has.
+    for mode in [0o600, 0o640, 0o666, 0o777] {
+        fs::write(&path, "old").unwrap();
+        fs::set_permissions(&path, fs::Permissions::from_mode(mode)).unwrap();
+        write_whole(&path, b"new").unwrap();
+        let found = fs::metadata(&path).unwrap().permissions().mode() & 0o7777;
+        assert_eq!(found, mode, "{found:o}");
+    }
+}
+
+#[test]
+fn a_new_folder_appears_with_its_files_or_not_at_all() {
+    let folder = tempfile::tempdir().unwrap();
+    let there = |path: &str| folder.path().join(path);
+    let staged = || {
+        let mut outputs = Outputs::new();
+        outputs.folder(&there("new/pictures")).unwrap();
+        outputs.folder(&there("new/pictures/more")).unwrap();
+        for file in ["new/pictures/a", "new/pictures/more/b", "new/c"] {
+            outputs.stage(&there(file), file.as_bytes()).unwrap();
+        }
+        assert!(!there("new/pictures").exists());
+        outputs
+    };
+    drop(staged());
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    staged().commit().unwrap();
+    for file in ["new/pictures/a", "new/pictures/more/b", "new/c"] {
+        assert_eq!(fs::read_to_string(there(file)).unwrap(), file);
+    }
+    assert_eq!(fs::read_dir(there("new")).unwrap().count(), 2);
+    assert_eq!(fs::read_dir(there("new/pictures")).unwrap().count(), 2);
+
+    // What an earlier run wrote goes with the commit, and only then.
+    let mut outputs = Outputs::new();
+    outputs.remove(&there("new/c"));
+    outputs.remove(&there("never"));
+    assert!(there("new/c").exists());
+    outputs.commit().unwrap();
+    assert!(!there("new/c").exists());
 }
 
 #[cfg(target_os = "linux")]

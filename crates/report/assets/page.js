@@ -47,7 +47,7 @@ const gyrocalReadout = (() => {
 
   // The number at the start of a cell, or none.
   const number = (text) => {
-    const plain = text.replaceAll("−", "-").replace(/·10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)/u, (_, raised) =>
+    const plain = text.replaceAll("−", "-").replace(/\((\S+) ± \S+\)/u, "$1").replace(/·10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)/u, (_, raised) =>
       `e${[...raised].map((letter) => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹".indexOf(letter)).map((place) => (place ? place - 1 : "-")).join("")}`);
     const found = /^[<>≈ ]*([+-]?\d[\d.]*(?:e[+-]?\d+)?)/.exec(plain.trim());
     return found ? Number(found[1]) : null;

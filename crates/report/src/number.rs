@@ -11,12 +11,16 @@ pub(crate) fn short(value: f64, digits: usize) -> String {
     }
 }
 
-/// A value and its uncertainty, both to the place of the second digit of the uncertainty.
+/// A value and its uncertainty, both to the place of the second digit of the uncertainty; with a common power of
+/// ten where fixed point would have many zeros.
 pub(crate) fn with_uncertainty(value: f64, uncertainty: f64) -> String {
-    if !(1e-6..100.0).contains(&uncertainty) {
-        return format!("{} ± {}", short(value, 3), short(uncertainty, 2));
+    match uncertainty {
+        fixed if (1e-6..100.0).contains(&fixed) => {
+            typographic(&format::estimate(value, fixed).join(" ± "))
+        }
+        sigma if sigma > 0.0 && sigma.is_finite() => typographic(&format::with_sigma(value, sigma)),
+        other => format!("{} ± {}", short(value, 3), short(other, 2)),
     }
-    typographic(&format::estimate(value, uncertainty).join(" ± "))
 }
 
 /// A number with a true minus sign and a power of ten in place of `e`.
@@ -103,6 +107,15 @@ mod tests {
         assert_eq!(short(0.0, 3), "0");
         assert_eq!(with_uncertainty(-0.026_251, 1.62e-4), "−0.02625 ± 0.00016");
         assert_eq!(with_uncertainty(12.3, 0.0), "12.3 ± 0");
+        assert_eq!(
+            with_uncertainty(0.123_456_789, 1.2e-8),
+            "0.123456789 ± 0.000000012"
+        );
+        assert_eq!(
+            with_uncertainty(-1.234e-5, 5.6e-8),
+            "(−1.2340 ± 0.0056)·10⁻⁵"
+        );
+        assert_eq!(with_uncertainty(12_345.678, 345.6), "12346 ± 346");
         assert_eq!(count(4320), "4320");
         assert_eq!(count(1_000_000), "1\u{A0}000\u{A0}000");
     }

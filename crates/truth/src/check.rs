@@ -1,8 +1,8 @@
 //! Validation of a scenario.
 
-use gyrocal_record::Bound;
+use gyrocal_record::{Bound, Record};
 
-use crate::effect::Effect;
+use crate::effect::{DRIFT, DRIFT_SPREAD, Effect};
 use crate::error::Error;
 use crate::hidden::Hidden;
 use crate::scenario::{MAX_ROWS, Scenario};
@@ -55,6 +55,7 @@ impl Scenario {
         let temperature = self.temperature.unwrap_or_default();
         let latitude = Bound::Within(-90.0, 90.0);
         let rows = Bound::Within(0.0, MAX_ROWS);
+        let duration = Bound::Within(0.0, Record::LONGEST_S);
         let share = Bound::Within(0.0, 1.0);
         [
             ("latitude_deg", self.latitude_deg, latitude),
@@ -62,12 +63,12 @@ impl Scenario {
             (
                 "gyro_noise_deg_per_h",
                 self.gyro_noise_deg_per_h,
-                Bound::NotNegative,
+                DRIFT_SPREAD,
             ),
             ("gravity", self.bench_gravity(), Bound::Positive),
             ("start_s", self.start_s, Bound::Finite),
             ("interval_s", self.interval_s, Bound::Positive),
-            ("duration_s", self.duration_s, Bound::NotNegative),
+            ("duration_s", self.duration_s, duration),
             (
                 "duration_s / interval_s",
                 self.duration_s / self.interval_s,
@@ -102,17 +103,17 @@ impl Scenario {
             (
                 "coefficients.bias_deg_per_h",
                 coefficients.bias_deg_per_h,
-                Bound::Finite,
+                DRIFT,
             ),
             (
                 "coefficients.g_deg_per_h_per_g",
                 coefficients.g_deg_per_h_per_g,
-                Bound::Finite,
+                DRIFT,
             ),
             (
                 "coefficients.gg_deg_per_h_per_g2",
                 coefficients.gg_deg_per_h_per_g2,
-                Bound::Finite,
+                DRIFT,
             ),
         ]
     }

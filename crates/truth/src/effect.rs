@@ -4,6 +4,14 @@ use gyrocal_record::{AXES, Bound};
 
 use crate::temperature::OfTemperature;
 
+/// Drifts in deg/h, and such by g, K or gauss: up to three degrees a second; more are a mistake in a unit.
+pub(crate) const DRIFT: Bound = Bound::Within(-MAX_DRIFT, MAX_DRIFT);
+
+/// Noise and random walks in deg/h: up to the largest drift.
+pub(crate) const DRIFT_SPREAD: Bound = Bound::Within(0.0, MAX_DRIFT);
+
+const MAX_DRIFT: f64 = 1e4;
+
 /// An effect; gyros, accelerometers and axes are 0, 1, 2 for x, y, z.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Effect {
@@ -116,6 +124,19 @@ const ANGLES: [Parameter; 3] = [
 impl Effect {
     /// The parameters, in the order in which their values are kept.
     pub(crate) fn parameters(self) -> Vec<Parameter> {
+        let mut all = self.unbounded();
+        for parameter in &mut all {
+            parameter.bound = match parameter.bound {
+                Bound::Finite if parameter.unit.starts_with("deg/h") => DRIFT,
+                Bound::NotNegative if parameter.unit == "deg/h/sqrt(h)" => DRIFT_SPREAD,
+                bound => bound,
+            };
+        }
+        all
+    }
+
+    /// The same without the bounds of drifts.
+    fn unbounded(self) -> Vec<Parameter> {
         match self {
             Self::GyroProduct { powers, .. } => vec![size(match powers.iter().sum::<u8>() {
                 0 => "deg/h",

@@ -2,12 +2,13 @@
 
 mod steps;
 
-use steps::LONGEST_STEP_S;
+use steps::{LONGEST_STEP_S, MOST_STEPS};
 
 use crate::attitude::Attitude;
 use crate::drift::DriftLaw;
 use crate::earth_rotation::{EarthAngle, EarthRotation};
 use crate::effect::Effect;
+use crate::error::Error;
 use crate::platform::{EARTH_RATE_RAD_PER_S, Platform};
 use crate::scenario::Scenario;
 use crate::temperature::Thermal;
@@ -20,6 +21,8 @@ pub(crate) struct Motion<'a> {
     has_switches: bool,
     earth: EarthRotation,
     longest_step_s: f64,
+    /// Steps until the motion takes too long.
+    pub(crate) steps_left: u64,
     /// Onsets and knocks at known times, in falling order.
     events: Vec<Event>,
     thermal: Line,
@@ -140,6 +143,7 @@ impl<'a> Motion<'a> {
     ) -> Self {
         let mut motion = Self {
             has_switches: law.has_switches(),
+            steps_left: MOST_STEPS,
             longest_step_s: law.longest_step_s().min(LONGEST_STEP_S),
             state: State {
                 platform_c_inertial: initial_platform_c_enu,
@@ -179,15 +183,24 @@ impl<'a> Motion<'a> {
 
     /// Integrates to a later time with a held noise of the gyros and a temperature that changes
     /// linearly to the given one.
-    pub(crate) fn advance_to(&mut self, time_s: f64, noise_deg_per_h: [f64; 3], thermal: Thermal) {
+    ///
+    /// # Errors
+    ///
+    /// [`Error::InvalidScenario`] if that takes too many steps.
+    pub(crate) fn advance_to(
+        &mut self,
+        time_s: f64,
+        noise_deg_per_h: [f64; 3],
+        thermal: Thermal,
+    ) -> Result<(), Error> {
         let now_s = self.state.moment.time_s;
         self.thermal = Line::between(now_s, self.thermal.at(now_s), time_s, thermal);
         while let Some(event) = self.events.last().filter(|event| event.time_s <= time_s) {
             let event_s = event.time_s;
-            self.steps_to(event_s, noise_deg_per_h);
+            self.steps_to(event_s, noise_deg_per_h)?;
             self.apply_events();
         }
-        self.steps_to(time_s, noise_deg_per_h);
+        self.steps_to(time_s, noise_deg_per_h)
     }
 
     fn state_at(

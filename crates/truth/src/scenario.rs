@@ -94,6 +94,7 @@ impl Scenario {
     #[must_use]
     pub fn bench(&self) -> Bench {
         Bench {
+            identification: std::collections::BTreeMap::new(),
             latitude_deg: self.latitude_deg,
             gravity: self.gravity,
             uncertainty: SiteUncertainty::default(),

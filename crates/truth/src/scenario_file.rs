@@ -8,10 +8,11 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use gyrocal_record::{
-    Bound, Document, Error, InputErrorKind, Prior, Site, SourceText, Table, WhiteNoise,
+    Bound, Document, Error, InputErrorKind, Prior, Record, Site, SourceText, Table, WhiteNoise,
 };
 
 use crate::coefficients::Coefficients;
+use crate::effect::{DRIFT, DRIFT_SPREAD};
 use crate::hidden_file::{self, HIDDEN, read_hidden};
 use crate::scenario::{InitialAttitude, MAX_ROWS, Scenario};
 use crate::temperature::Temperature;
@@ -142,7 +143,7 @@ impl Scenario {
                 "platform",
                 &["initial_angles_deg", "initial_angles_sigma_deg"],
             )?;
-            let noise = WhiteNoise::from_root(root)?;
+            let noise = read_noise(root)?;
             let scenario = Self {
                 seed: root.whole_number("seed")?,
                 latitude_deg: site.latitude_deg,
@@ -164,12 +165,20 @@ impl Scenario {
     }
 }
 
+fn read_noise(root: &Table<'_>) -> Result<WhiteNoise, Error> {
+    let noise = WhiteNoise::from_root(root)?;
+    // The same in a bench file is no work.
+    let table = root.table(WhiteNoise::TABLE, &WhiteNoise::KEYS)?;
+    table.number(WhiteNoise::KEYS[1], DRIFT_SPREAD)?;
+    Ok(noise)
+}
+
 fn read_coefficients(root: &Table<'_>) -> Result<Coefficients, Error> {
     let gyros = root.table("gyros", &GYRO_KEYS)?;
     Ok(Coefficients {
-        bias_deg_per_h: gyros.three_numbers(GYRO_KEYS[0], Bound::Finite)?,
-        g_deg_per_h_per_g: gyros.three_numbers(GYRO_KEYS[1], Bound::Finite)?,
-        gg_deg_per_h_per_g2: gyros.three_numbers(GYRO_KEYS[2], Bound::Finite)?,
+        bias_deg_per_h: gyros.three_numbers(GYRO_KEYS[0], DRIFT)?,
+        g_deg_per_h_per_g: gyros.three_numbers(GYRO_KEYS[1], DRIFT)?,
+        gg_deg_per_h_per_g2: gyros.three_numbers(GYRO_KEYS[2], DRIFT)?,
     })
 }
 
@@ -213,6 +222,10 @@ fn with_sampling(scenario: Scenario, sampling: &Table<'_>) -> Result<Scenario, E
     if duration_s / interval_s > MAX_ROWS {
         let expected = format!("at most {MAX_ROWS:?} intervals");
         return out_of_range("duration_s", &expected, "is everything in seconds?");
+    }
+    if duration_s > Record::LONGEST_S {
+        let expected = "at most 3.16e9 s, a hundred years";
+        return out_of_range("duration_s", expected, "is everything in seconds?");
     }
     let gaps_s = sampling.optional_intervals("gaps_s", Bound::NotNegative)?;
     if gaps_s.iter().any(|gap| gap[0] <= 0.0) {

@@ -122,7 +122,7 @@ fn run(
     for (row, clock_s) in scenario.grid_s().enumerate() {
         if row > 0 {
             let noise = gyro_noise.next_deg_per_h(scenario.interval_s);
-            motion.advance_to(clock.true_time_s(clock_s), noise, thermal_at(row));
+            motion.advance_to(clock.true_time_s(clock_s), noise, thermal_at(row))?;
         }
         if sampling.log(row, clock_s, sensing.output_g(motion.moment())) {
             platform_c_enu.push(motion.platform_c_enu());

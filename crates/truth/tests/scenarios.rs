@@ -6,7 +6,7 @@ use std::path::Path;
 
 use gyrocal_record::{Gravity, InputErrorKind, Prior};
 use gyrocal_truth::{
-    Coefficients, Error, InitialAttitude, Population, Scenario, Term, euler_rule, simulate,
+    Coefficients, Error, Hidden, InitialAttitude, Population, Scenario, Term, euler_rule, simulate,
     simulate_with,
 };
 use sha2::{Digest, Sha256};
@@ -127,6 +127,13 @@ fn a_mistake_in_a_scenario_file_is_shown_where_it_is() {
             InputErrorKind::OutOfRange,
         ),
         (
+            "duration_s = 21600.0\ninterval_s = 60.0",
+            "duration_s = 1e11\ninterval_s = 1e9",
+            "s.toml:20:14",
+            "a hundred years",
+            InputErrorKind::OutOfRange,
+        ),
+        (
             "gaps_s = []",
             "gaps_s = [[9.0, 3.0]]",
             "s.toml:23:11",
@@ -159,6 +166,45 @@ fn a_mistake_in_a_scenario_file_is_shown_where_it_is() {
         };
         assert_eq!(input.kind, kind);
     }
+}
+
+#[test]
+fn a_drift_that_would_take_ages_is_refused() {
+    let good = short().to_toml();
+    for (key, wrong) in [
+        ("bias_deg_per_h", "[1e6, 0.0, 0.0]"),
+        ("g_deg_per_h_per_g", "[0.0, -1e308, 0.0]"),
+        ("gg_deg_per_h_per_g2", "[0.0, 0.0, 1e5]"),
+        ("gyro_deg_per_h", "1e300"),
+    ] {
+        let head = format!("\n{key} = ");
+        let (before, after) = good.split_once(&head).unwrap();
+        let (_, rest) = after.split_once('\n').unwrap();
+        let error = Scenario::parse(&format!("{before}{head}{wrong}\n{rest}"), "s.toml");
+        let shown = error.unwrap_err().to_string();
+        assert!(
+            shown.contains("to 10000") && shown.starts_with("s.toml:"),
+            "{shown}"
+        );
+    }
+    for (id, parameters) in [
+        ("gyro_x.step", [("size", 1e6), ("onset_s", 0.0)]),
+        ("gyro_y.diurnal", [("sine", 1.0), ("cosine", -1e9)]),
+    ] {
+        let error = Hidden::new(id, &parameters).unwrap_err().to_string();
+        assert!(error.contains("from -10000 to 10000"), "{error}");
+    }
+    // What no single number tells: each is in its bounds.
+    let tone = Hidden::new("gyro_x.tone", &[("size", 1.0), ("period_h", 1e-12)]).unwrap();
+    let scenario = Scenario {
+        hidden: vec![tone],
+        ..short()
+    };
+    let error = simulate(&scenario).unwrap_err().to_string();
+    assert!(
+        error.contains("scenario: drift: found ") && error.contains("more than 200000000 steps"),
+        "{error}"
+    );
 }
 
 #[test]

@@ -22,6 +22,15 @@ pub(crate) fn short(value: f64) -> String {
     format::short(value, 4)
 }
 
+/// A time in the unit that serves it: `0.0500 s`, `12.5 min`, `5.30 h`.
+pub(crate) fn time(seconds: f64) -> String {
+    match seconds {
+        s if s < 120.0 => format!("{} s", format::significant(s, 3)),
+        s if s < 7200.0 => format!("{} min", format::significant(s / 60.0, 3)),
+        s => format!("{:.2} h", s / 3600.0),
+    }
+}
+
 /// Rows and duration of a record: `2880 rows over 2.00 days`.
 #[must_use]
 pub fn size(rows: usize, duration_s: f64) -> String {

@@ -1,10 +1,8 @@
 //! Errors of `gyrocal calibrate`, with advice.
 
-use std::path::Path;
-
 use gyrocal::EstimationError;
 use gyrocal_calibration::{CalibrationError, Run, is_gyro_noise_implausible};
-use gyrocal_record::{CalibrationMethod, CalibrationReport, printable_path};
+use gyrocal_record::{CalibrationMethod, CalibrationReport};
 
 use crate::advice::{GYRO_ADVICE, advised};
 
@@ -99,13 +97,13 @@ pub(super) struct WrongSetup {
 }
 
 impl WrongSetup {
-    pub(super) fn new(report: &CalibrationReport, json: Option<&Path>) -> Self {
-        let written = json.map_or_else(String::new, |path| {
-            format!("; {}: the result for programs", printable_path(path))
-        });
+    pub(super) fn new(report: &CalibrationReport, written: &[(String, String)]) -> Self {
+        let written = written.iter();
         Self {
             text: report.verdict_text.clone(),
-            written,
+            written: written
+                .map(|(path, what)| format!("; {path}: {what}"))
+                .collect(),
         }
     }
 

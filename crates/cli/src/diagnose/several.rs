@@ -31,7 +31,7 @@ pub(super) fn run(
     let mut found =
         diagnose_records(checked, &options, |stage| progress.at(stage)).map_err(failed)?;
     drop(progress);
-    found.together.result.manifest = manifest_of(MODEL_HASH, options.seed, inputs)?;
+    found.together.result.manifest = manifest_of(MODEL_HASH, options.seed, inputs, &benches)?;
     let result = &found.together.result;
     tracing::info!(verdict = ?result.verdict, "diagnosed");
     let mut answer = Reply::of_answer(result);

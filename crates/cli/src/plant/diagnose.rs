@@ -11,6 +11,7 @@ use gyrocal_plant::{
 };
 use gyrocal_record::{Manifest, printable_path};
 
+use super::warn_of_gaps;
 use crate::numbers::probability;
 use crate::outputs::{manifest, refuse_itself, write_answer};
 use crate::page::Views;
@@ -60,7 +61,10 @@ pub(super) fn run(
         let read = paths
             .iter()
             .map(|path| read(&columns, plant.description(), path));
-        read.collect::<Result<Vec<NamedRecord>, PlantError>>()
+        let read = read.collect::<Result<Vec<NamedRecord>, PlantError>>()?;
+        read.iter()
+            .for_each(|one| warn_of_gaps(&columns, plant.description(), one));
+        Ok::<_, PlantError>(read)
     };
     let records = all(&arguments.records, ColumnMap::named_record)?;
     let next = all(&arguments.next, ColumnMap::named_run)?;
@@ -68,7 +72,9 @@ pub(super) fn run(
         Some(path) => {
             let own = arguments.validate_columns.as_deref().map(ColumnMap::read);
             let columns = own.transpose()?.unwrap_or(columns);
-            Some(columns.record(plant.description(), path)?)
+            let later = columns.named_record(plant.description(), path)?;
+            warn_of_gaps(&columns, plant.description(), &later);
+            Some(later.record)
         }
         None => None,
     };
@@ -81,7 +87,7 @@ pub(super) fn run(
     let mut found = diagnose_records(&plant, records, later, &options)?;
     found.together.forecast(next)?;
     drop(progress);
-    let manifest = manifest("", options.seed, &inputs)?;
+    let manifest = manifest(plant.hash(), options.seed, &inputs)?;
     found.together.answer.manifest = manifest.clone();
     let answer = &found.together.answer;
     let mut shown = Reply::of_part(&of_result(answer));

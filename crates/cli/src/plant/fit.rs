@@ -1,15 +1,17 @@
 //! `gyrocal plant fit` and `gyrocal plant compare`, and `fit` of a package for one plant.
 
+use std::cell::Cell;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use gyrocal_instruments::ResultFile;
 use gyrocal_pages::{Part, of_comparison, of_fit};
 use gyrocal_plant::description::Description;
-use gyrocal_plant::{ColumnMap, LoadedPlant, NamedRecord, PlantError, compare, fit};
+use gyrocal_plant::{ColumnMap, LoadedPlant, NamedRecord, PlantError, RecordText, compare, fit};
 use gyrocal_record::{Manifest, printable_path};
 use serde::Serialize;
 
+use super::warn_of_gaps;
 use crate::outputs::{self, manifest, refuse_itself};
 use crate::progress::Progress;
 use crate::{Failure, Reply};
@@ -69,32 +71,56 @@ impl Files {
         Ok(inputs)
     }
 
-    /// The record, and the later one.
-    fn read(
-        &self,
-        description: &Description,
-        record: &Path,
-    ) -> Result<(NamedRecord, Option<NamedRecord>), PlantError> {
-        let columns = ColumnMap::read(&self.columns)?;
-        let named = |path: &Path| columns.named_record(description, path);
-        let later = self.later.as_deref().map(named).transpose()?;
-        Ok((named(record)?, later))
+    /// The content of the record, and of the later one.
+    fn read(&self, record: &Path) -> Result<Content, PlantError> {
+        Ok(Content {
+            columns: ColumnMap::read(&self.columns)?,
+            record: RecordText::read(record)?,
+            later: self.later.as_deref().map(RecordText::read).transpose()?,
+            warned: Cell::new(false),
+        })
     }
 
     /// Does the work, and shows and writes its answer.
     fn answered<T: Serialize>(
         &self,
-        inputs: &[&Path],
+        (model_hash, inputs): (&str, &[&Path]),
         work: impl FnOnce(&mut dyn FnMut(&'static str, f64)) -> Result<T, PlantError>,
         page: impl FnOnce(&T, &Manifest) -> Part,
     ) -> Result<Reply, Failure> {
         let mut progress = Progress::waiting("fitting", 0);
         let answer = work(&mut |stage, share| progress.stage(stage, share))?;
         drop(progress);
-        let manifest = manifest("", 0, inputs)?;
+        let manifest = manifest(model_hash, 0, inputs)?;
         let mut shown = Reply::of_part(&page(&answer, &manifest));
         shown.write_json(self.json.as_deref(), &ResultFile::new(manifest, &answer))?;
         Ok(shown)
+    }
+}
+
+/// What is read once for any number of plants.
+struct Content {
+    columns: ColumnMap,
+    record: RecordText,
+    later: Option<RecordText>,
+    /// Whether gaps were told.
+    warned: Cell<bool>,
+}
+
+impl Content {
+    /// The record, and the later one, for a plant.
+    fn records(
+        &self,
+        description: &Description,
+    ) -> Result<(NamedRecord, Option<NamedRecord>), PlantError> {
+        let named = |text| self.columns.record_of(description, text);
+        let record = named(&self.record)?;
+        let later = self.later.as_ref().map(named).transpose()?;
+        if !self.warned.replace(true) {
+            let all = core::iter::once(&record).chain(&later);
+            all.for_each(|one| warn_of_gaps(&self.columns, description, one));
+        }
+        Ok((record, later))
     }
 }
 
@@ -106,11 +132,11 @@ pub(super) fn run(
 ) -> Result<Reply, Failure> {
     let inputs = files.checked(record, file.into_iter())?;
     let plant = plant()?;
-    let (record, later) = files.read(plant.description(), record)?;
+    let (record, later) = files.read(record)?.records(plant.description())?;
     let work = |at: &mut dyn FnMut(&'static str, f64)| {
         fit(&plant, record, later, files.first_rows, at).map(|fit| fit.answer)
     };
-    files.answered(&inputs, work, of_fit)
+    files.answered((plant.hash(), &inputs), work, of_fit)
 }
 
 /// Runs `compare`.
@@ -124,7 +150,8 @@ pub(super) fn run_compare(
     let plants = plants.iter();
     let plants = plants.map(|path| Ok((printable_path(path), LoadedPlant::read(path)?)));
     let plants: Vec<(String, LoadedPlant)> = plants.collect::<Result<_, PlantError>>()?;
-    let read = |description: &Description| files.read(description, record);
+    let content = files.read(record)?;
+    let read = |description: &Description| content.records(description);
     let work = |at: &mut dyn FnMut(&'static str, f64)| compare(&plants, read, files.first_rows, at);
-    files.answered(&inputs, work, of_comparison)
+    files.answered(("", &inputs), work, of_comparison)
 }

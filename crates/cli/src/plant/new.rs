@@ -8,6 +8,7 @@ use gyrocal_plant_codegen::{Package, Source};
 use gyrocal_record::{printable_path, shell_quoted};
 use miette::miette;
 
+use crate::outputs::make_folder;
 use crate::{Failure, Reply};
 
 /// Make a package for a plant of your own: its Python script, a build that derives it, a command.
@@ -32,12 +33,18 @@ pub(crate) fn run(arguments: &NewPlantArguments) -> Result<Reply, Failure> {
             "`{given}` has no name of a package for its last part"
         ))
     })?;
+    let taken = std::fs::read_dir(&arguments.name);
+    if taken.is_ok_and(|mut files| files.next().is_some()) || arguments.name.is_file() {
+        return Err(Failure::of(
+            &arguments.name,
+            "exists and is not empty: give another name",
+        ));
+    }
     let source = match &arguments.gyrocal {
         Some(path) => Source::Path(path.clone()),
         None => Source::Version(env!("CARGO_PKG_VERSION").to_owned()),
     };
     let package = Package::new(name, source)?;
-    package.write(&arguments.name)?;
     let from = match &package.source {
         Source::Path(path) => format!("gyrocal of {}, by its path", printable_path(path)),
         Source::Version(version) => format!("the published gyrocal {version}, exactly"),
@@ -51,8 +58,12 @@ pub(crate) fn run(arguments: &NewPlantArguments) -> Result<Reply, Failure> {
     );
     screen.fact("next", words);
     let mut shown = Reply::of(screen, String::new());
+    let directory = &arguments.name;
+    make_folder("", directory, &mut shown.outputs)?;
     for file in &package.files {
-        shown.wrote(&arguments.name.join(file.path), file.what);
+        let path = directory.join(file.path);
+        make_folder("", path.parent().unwrap_or(directory), &mut shown.outputs)?;
+        shown.write(Some(&path), file.what, |_| Ok(&file.text))?;
     }
     Ok(shown)
 }

@@ -3,12 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use gyrocal_answer::read_fit;
+use gyrocal_answer::{PlantFit, read_fit};
 use gyrocal_document::{Screen, Standing};
 use gyrocal_plant::{ColumnMap, LoadedPlant, PlantError, simulate};
+use gyrocal_record::printable_path;
 use gyrocal_statistics::format::short;
 use gyrocal_words::counted;
 
+use super::warn_of_gaps;
 use crate::outputs::{refuse_overlap, refuse_unwritable};
 use crate::progress::Progress;
 use crate::{Failure, Reply};
@@ -32,6 +34,24 @@ pub(super) struct SimulateArguments {
     output: PathBuf,
 }
 
+/// The fit in a file, and whether it is known to be of the program of this plant. One of another program of the same name
+/// is refused; [`simulate`] refuses one of another name.
+fn fit_of(plant: &LoadedPlant, path: &Path) -> Result<(PlantFit, bool), Failure> {
+    let (fit, found) = read_fit(path)?;
+    let (name, expected) = (&plant.description().name, plant.hash());
+    if fit.plant == *name && !found.is_empty() && found != expected {
+        return Err(Failure::from(PlantError::Input {
+            origin: printable_path(path),
+            problem: format!(
+                "it is a fit of another program of the name {name}: found the hash {found}, expected {expected}"
+            ),
+            advice: "fit this program with `plant fit --json`, or give the one that was fitted"
+                .to_owned(),
+        }));
+    }
+    Ok((fit, !found.is_empty()))
+}
+
 /// Runs the command; `file` is that of the plant, if it is read from one.
 pub(super) fn run(
     file: Option<&Path>,
@@ -49,10 +69,16 @@ pub(super) fn run(
     refuse_overlap(&all, &[("--output", output)])?;
     refuse_unwritable(&[output], None)?;
     let plant = plant()?;
-    let run = ColumnMap::read(&arguments.columns)?.named_run(plant.description(), inputs)?;
-    let fit = arguments.fit.as_deref().map(read_fit).transpose()?;
+    let columns = ColumnMap::read(&arguments.columns)?;
+    let run = columns.named_run(plant.description(), inputs)?;
+    warn_of_gaps(&columns, plant.description(), &run);
+    let fit = arguments
+        .fit
+        .as_deref()
+        .map(|path| fit_of(&plant, path))
+        .transpose()?;
     let _progress = Progress::waiting("simulating", run.record.len());
-    let simulated = simulate(&plant, run, fit.as_ref())?;
+    let simulated = simulate(&plant, run, fit.as_ref().map(|(fit, _)| fit))?;
     let rows = counted(simulated.time_s.len(), "row");
     let what = format!("{} over {rows}.", plant.description().name);
     let mut screen = Screen::new(Standing::Neutral, "SIMULATED", what);
@@ -67,6 +93,11 @@ pub(super) fn run(
         let held = simulated.held.join(", ");
         let why = "held in the fit, whose record does not determine it; the standard deviations leave it out";
         screen.fact("not known", format!("{held}: {why}"));
+    }
+    if fit.is_some_and(|(_, is_checked)| !is_checked) {
+        let words = "the file of the fit has no hash of the program, as older ones: that it is of this plant \
+                     is known by its name alone";
+        screen.fact("not checked", words);
     }
     let mut shown = Reply::of(screen, String::new());
     let what = "states and outputs with standard deviations";

@@ -1,6 +1,6 @@
 //! `gyrocal plant fit`, `compare` and `simulate`: docs/any-plant.md shows what the first prints (`documents.rs`).
 
-use crate::folder::{Folder, repository};
+use crate::folder::{Folder, assert_says, repository};
 
 fn example(name: &str) -> String {
     repository(&format!("examples/duffing/{name}"))
@@ -120,4 +120,100 @@ fn a_comparison_is_one_table_and_refuses_another_plant() {
     let files = [record.as_str(), "--columns", &columns];
     let refused = folder.fail([&["plant", "compare", &plant, &servo][..], &files].concat());
     assert!(refused.contains("it has the inputs"), "{refused}");
+}
+
+#[test]
+fn what_a_record_lacks_is_told() {
+    let folder = Folder::new();
+    let [plant, columns] = ["plant.json", "columns.toml"].map(example);
+    let text = std::fs::read_to_string(example("record.csv")).unwrap();
+    let lines: Vec<&str> = text.lines().collect();
+    let put = |name: &str, lines: Vec<&str>| folder.put(name, lines.join("\n") + "\n");
+    // Rows 1 to 98, of 0 to 4.85 s, then those from 19.95 s on.
+    put("gap.csv", [&lines[..99], &lines[400..]].concat());
+    put("three.csv", lines[..4].to_vec());
+    put("one.csv", lines[..2].to_vec());
+    let mut absurd = lines.clone();
+    absurd[300] = "14.950,1.8e19,0.1";
+    put("absurd.csv", absurd);
+    let with = |command: &'static str, record: &'static str| {
+        let more: &[&str] = match command {
+            "simulate" => &["--output", "s.csv"],
+            _ => &[],
+        };
+        let all = ["plant", command, &plant, record, "--columns", &columns];
+        [&all[..], more].concat()
+    };
+    for command in ["fit", "simulate"] {
+        let output = folder.run(with(command, "gap.csv"));
+        assert!(output.status.success(), "{output:?}");
+        assert_says(
+            &String::from_utf8(output.stderr).unwrap(),
+            "gap.csv: input `u` (column `drive_n`) is interpolated over gaps of the rows: 15.1 s between rows 98 and \
+             99; if it moved there, cut the record",
+        );
+    }
+    let whole = folder.run(with("simulate", "three.csv"));
+    assert!(
+        whole.status.success() && whole.stderr.is_empty(),
+        "{whole:?}"
+    );
+    for command in ["fit", "diagnose"] {
+        assert_says(
+            &folder.fail(with(command, "one.csv")),
+            "it has 1 row, and 13 are needed: 3 parameters and 2 initial states are estimated, and 8 further rows \
+             tell the noise",
+        );
+        assert_says(
+            &folder.fail(with(command, "absurd.csv")),
+            "input `u` is 1.8e19 in row 300",
+        );
+    }
+    assert_says(
+        &folder.fail(with("simulate", "one.csv")),
+        "it has 1 row, and 2 are needed: a simulation goes from one row to the next",
+    );
+}
+
+#[test]
+fn a_fit_is_of_one_program_and_equal_plants_tie() {
+    let folder = Folder::new();
+    let [plant, record, columns] = ["plant.json", "record.csv", "columns.toml"].map(example);
+    let files = [record.as_str(), "--columns", &columns];
+    let fit = [&["plant", "fit", &plant], &files[..], &["--json", "f.json"]].concat();
+    folder.succeed(&fit);
+    let mut answer: serde_json::Value = folder.json("f.json");
+    let manifest = &answer["manifest"];
+    assert_eq!(manifest["model_hash"], manifest["inputs"][2]["sha256"]);
+
+    let program = std::fs::read_to_string(&plant).unwrap();
+    folder.put(
+        "other.json",
+        program.replacen("on a spring", "on a wire", 1),
+    );
+    let simulate = |plant, fit| {
+        let more = ["--fit", fit, "--output", "s.csv"];
+        [&["plant", "simulate", plant], &files[..], &more].concat()
+    };
+    let refused = folder.fail(simulate("other.json", "f.json"));
+    for words in [
+        "another program of the name Duffing: found the hash",
+        "expected",
+    ] {
+        assert_says(&refused, words);
+    }
+    assert!(
+        !folder
+            .succeed(simulate(&plant, "f.json"))
+            .contains("not checked")
+    );
+    answer["manifest"]["model_hash"] = "".into();
+    folder.put("old.json", answer.to_string());
+    assert_says(
+        &folder.succeed(simulate("other.json", "old.json")),
+        "not checked",
+    );
+
+    let compare = [&["plant", "compare", &plant, &plant], &files[..]].concat();
+    assert_says(&folder.succeed(compare), "have the same BIC, the least.");
 }

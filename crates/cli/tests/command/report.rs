@@ -99,6 +99,9 @@ fn reports_of_a_diagnosis_a_result_and_a_plan() {
 #[test]
 fn reports_of_a_calibration() {
     let folder = folder();
+    let bench = folder.text(BENCH);
+    let identity = "[identification]\nreport_number = \"R 17\"\nserial_number = \"00<7>\"\n";
+    folder.put(BENCH, format!("{bench}\n{identity}"));
     let said = folder.succeed(format!(
         "calibrate {RECORD} --bench {BENCH} --report c.html --json c.json --figures pictures"
     ));
@@ -121,6 +124,15 @@ fn reports_of_a_calibration() {
         "report.html",
         &["Drift coefficients", "<h1>FAULT</h1>"],
     );
+    let identity = &folder.json::<serde_json::Value>("c.json")["manifest"]["inputs"][1];
+    assert_eq!(identity["identification"]["serial_number"], "00<7>");
+    for name in ["c.html", "report.html"] {
+        let words = [
+            "<dt>report number</dt> <dd>R 17</dd>",
+            "· report number R 17 · serial number 00&lt;7&gt; · gyrocal ",
+        ];
+        assert_page(&folder, name, &words);
+    }
     let written = folder.text("c.json");
     let gross = written.replace("\"usable\": true", "\"usable\": false");
     assert_ne!(gross, written);
@@ -249,6 +261,7 @@ fn an_uncertainty_budget_of_two_runs_conforms_to_its_schema() {
         "Scatter over runs",
         "Test conditions",
         "choice of the model",
+        "<td class=\"num\">not declared</td>",
     ];
     assert_page(&folder, "u.html", &words);
     let wrong = ["report", RECORD, "--bench", BENCH, "--json", "b.json"];

@@ -199,6 +199,17 @@ fn a_plan_from_a_written_joint_diagnosis_is_that_from_the_diagnosis() {
     let record = screen.facts.iter().find(|fact| fact.label == "record");
     let words = &record.unwrap().words;
     assert!(words.contains("2 records together: 578 rows"), "{words}");
+    // Of an answer without findings, which may be an unexplained one: nothing is said of what is in doubt.
+    let mut none = written.clone();
+    none.now.sets.clear();
+    none.aim = Aim::Sigmas;
+    let screen = first_screen(&none);
+    let why = screen.facts.iter().find(|fact| fact.label == "why");
+    let words = &why.unwrap().words;
+    assert_eq!(
+        words,
+        "there are no findings: the run reduces the sigmas most"
+    );
 }
 
 #[test]

@@ -118,6 +118,7 @@ fn files(mut result: Answer, inputs: &str) -> String {
         path: path.to_owned(),
         sha256: String::new(),
         role: Some(role(path)),
+        ..Input::default()
     };
     result.manifest.inputs = inputs.split(' ').map(input).collect();
     let files = gyrocal_words::files(&result);

@@ -30,6 +30,7 @@ fn numeric_keys() -> BTreeSet<String> {
     let mut bench = clean(1, 0).bench();
     // Without `..`: a new field of a bench fails here to build.
     let Bench {
+        identification: _,
         latitude_deg: _,
         gravity,
         uncertainty,

@@ -252,7 +252,7 @@ mod tests {
     use super::super::templates::words_to_html;
     use super::*;
     use gyrocal_document::{
-        Bar, BarGroup, Bars, Column, Line, LineKind, List, Origin, Screen, Table, Tint, Words,
+        Bar, BarGroup, Bars, Column, Fact, Line, LineKind, List, Origin, Screen, Table, Tint, Words,
     };
 
     /// A text that a page must neither obey nor drop.
@@ -345,6 +345,11 @@ mod tests {
             }],
             origin: Origin {
                 command: own(),
+                identification: vec![Fact {
+                    label: own(),
+                    words: own(),
+                }],
+                foot: own(),
                 ..Origin::default()
             },
         };
@@ -354,6 +359,9 @@ mod tests {
         };
         let html = to_html(&page).unwrap();
         assert!(html.contains("&lt;own-tag&gt;\\u{202e}\\u{7}"));
+        let (identity, _) = html.split_once("class=\"verdict").unwrap();
+        let (_, identity) = identity.rsplit_once("class=\"identity").unwrap();
+        assert_eq!(identity.matches("own-tag&gt;").count(), 2, "{identity}");
         for hostile in ["<own-tag>", "\u{202e}", "\u{7}"] {
             assert!(!html.contains(hostile), "{hostile:?}");
         }

@@ -3,10 +3,14 @@
 use super::{Motion, State, sum};
 use crate::attitude::{Attitude, dot, norm};
 use crate::earth_rotation::EarthAngle;
+use crate::error::Error;
 use crate::platform::EARTH_RATE_RAD_PER_S;
 
 /// Longest step, s.
 pub(crate) const LONGEST_STEP_S: f64 = 60.0;
+
+/// Most steps of a motion: about a minute. A hundred years at [`LONGEST_STEP_S`] take a quarter of them.
+pub(super) const MOST_STEPS: u64 = 200_000_000;
 
 /// Largest relative rotation of Earth and platform in a step at a drift of 1 deg/h, rad; the Earth
 /// alone contributes 0.0044 rad in 60 s. The error of a step is proportional to the drift and to the
@@ -28,7 +32,7 @@ const RAD_PER_S_PER_DEG_PER_H: f64 = core::f64::consts::PI / 180.0 / 3600.0;
 
 impl Motion<'_> {
     /// Integrates in equal steps over an interval in which no onset falls.
-    pub(super) fn steps_to(&mut self, time_s: f64, noise_deg_per_h: [f64; 3]) {
+    pub(super) fn steps_to(&mut self, time_s: f64, noise_deg_per_h: [f64; 3]) -> Result<(), Error> {
         let start_s = self.state.moment.time_s;
         let duration_s = time_s - start_s;
         let rate = self.rate_deg_per_h(noise_deg_per_h);
@@ -41,6 +45,7 @@ impl Motion<'_> {
         // steps. `as` saturates: a time that is not a number takes no step.
         let steps = (duration_s / longest_s - 1e-9).ceil().max(0.0) as u64;
         let steps = if duration_s > 0.0 { steps.max(1) } else { 0 };
+        self.take_steps(steps, rate)?;
         for step in 1..=steps {
             let end_s = if step == steps {
                 time_s
@@ -48,19 +53,37 @@ impl Motion<'_> {
                 start_s + duration_s * (step as f64 / steps as f64)
             };
             if self.has_switches {
-                self.switching_step_to(end_s, noise_deg_per_h);
+                self.switching_step_to(end_s, noise_deg_per_h)?;
             } else {
                 self.state = self.stepped(end_s, noise_deg_per_h);
             }
         }
+        Ok(())
+    }
+
+    /// Counts steps at an inertial rate of the platform \[deg/h\].
+    fn take_steps(&mut self, steps: u64, rate: [f64; 3]) -> Result<(), Error> {
+        let left = self.steps_left.checked_sub(steps);
+        self.steps_left = left.ok_or_else(|| Error::InvalidScenario {
+            name: "drift",
+            found: format!(
+                "{:.3e} deg/h at {:.0} s, of which a step goes over {:.1e} s at most: more than {MOST_STEPS} steps",
+                norm(rate),
+                self.state.moment.time_s,
+                self.longest_step_s,
+            ),
+            expected: "slower drifts, longer periods, or a shorter record".to_owned(),
+        })?;
+        Ok(())
     }
 
     /// Integrates to a time in steps that end where a mode of the drift changes.
-    fn switching_step_to(&mut self, end_s: f64, noise_deg_per_h: [f64; 3]) {
+    fn switching_step_to(&mut self, end_s: f64, noise_deg_per_h: [f64; 3]) -> Result<(), Error> {
         while self.state.moment.time_s < end_s {
             let mut after = self.stepped(end_s, noise_deg_per_h);
             let switched = self.law.mode_changed(&after.moment);
             if switched {
+                self.take_steps(1, self.state.drift_deg_per_h)?;
                 after = self.first_switch(after, noise_deg_per_h);
             }
             self.state = after;
@@ -68,6 +91,7 @@ impl Motion<'_> {
                 self.update_modes();
             }
         }
+        Ok(())
     }
 
     /// The first state found with another mode, by halving the step to a state that has one.

@@ -48,11 +48,11 @@ fn a_mistake_is_shown_where_it_is() {
         ),
         (
             "[[hidden]]\neffect = \"gyro_y.g_z\"\n",
-            "2:10: found gyro_y.g_z without it, expected `size = ` a finite number",
+            "2:10: found gyro_y.g_z without it, expected `size = ` a number from -10000 to 10000",
         ),
         (
             "[[hidden]]\neffect = \"gyro_y.g_z\"\nsize = nan\n",
-            "3:8: found `nan`, expected a finite number",
+            "3:8: found `nan`, expected a number from -10000 to 10000",
         ),
         (
             "[[hidden]]\neffect = \"gyro_y.g_z\"\nsize = \"1\"\n",

@@ -45,7 +45,7 @@ fn wrong_parameters_are_named() {
         (
             "gyro_x.ramp",
             &[("size", f64::NAN)],
-            "gyro_x.ramp: size: found NaN, expected a finite number",
+            "gyro_x.ramp: size: found NaN, expected a number from -10000 to 10000",
         ),
         (
             "gyro_x.ramp",

@@ -1,6 +1,7 @@
 //! What a residual test found.
 
 use crate::files::joined;
+use crate::format::time;
 use gyrocal_answer::{ResidualTest, ResidualVerdict, UnmodelledPattern, UnmodelledTerm};
 
 /// The structure that a residual test found, or the tests that it could not make; empty if the
@@ -19,9 +20,11 @@ pub fn residual_description(test: &ResidualTest) -> String {
             let line = test.line.as_ref().filter(|line| line.significant);
             let line = line.map(|line| {
                 format!(
-                    "a spectral line in the innovations of channel {} with a period of {:.2} h and \
+                    "a spectral line in the innovations of channel {} with a period of {} and \
                      an amplitude of {:.2} sigma",
-                    line.channel, line.period_h, line.amplitude
+                    line.channel,
+                    time(3600.0 * line.period_h),
+                    line.amplitude
                 )
             });
             let correlation = test.correlation.filter(|found| found.significant);
@@ -48,13 +51,40 @@ fn unmodelled(term: &UnmodelledTerm) -> String {
     let (size, unit) = (term.size, &term.unit);
     match (term.pattern, term.period_h, &term.depends_on) {
         (UnmodelledPattern::Line, Some(period_h), _) => format!(
-            "a line in the {channel} with a period of {period_h:.2} h and an amplitude of {size:.2e} \
-             {unit}"
+            "a line in the {channel} with a period of {} and an amplitude of {size:.2e} \
+             {unit}",
+            time(3600.0 * period_h)
         ),
         (UnmodelledPattern::Curve, _, Some(axis)) => format!(
             "the {channel} depends on specific force along {axis} as no polynomial of the catalogue \
              does, {size:.2e} {unit} rms"
         ),
         _ => format!("a term in the {channel} of {size:.2e} {unit}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_period_is_in_a_unit_that_serves_it() {
+        let words = |period_h| {
+            let of_gyro = UnmodelledTerm {
+                channel: "gyro_x".to_owned(),
+                pattern: UnmodelledPattern::Line,
+                period_h: Some(period_h),
+                depends_on: None,
+                size: 0.01,
+                unit: "deg/h".to_owned(),
+                p_value: 1e-6,
+            };
+            unmodelled(&of_gyro)
+        };
+        for (period_h, told) in [(0.001, "3.60 s"), (0.5, "30.0 min"), (5.3, "5.30 h")] {
+            let words = words(period_h);
+            let expected = format!("gyro x with a period of {told} and an");
+            assert!(words.contains(&expected), "{words}");
+        }
     }
 }

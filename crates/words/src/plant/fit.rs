@@ -1,6 +1,8 @@
 //! The fit of a plant in words, and fits beside each other.
 
-use gyrocal_answer::{OutputFit, PlantComparison, PlantFit, RecordSummary, SimulationError};
+use gyrocal_answer::{
+    ComparedFit, OutputFit, PlantComparison, PlantFit, RecordSummary, SimulationError,
+};
 use gyrocal_document::{Screen, Standing};
 use gyrocal_statistics::format::significant;
 
@@ -91,11 +93,14 @@ pub fn comparison_screen(compared: &PlantComparison) -> Screen {
     by_bic.sort_by(|a, b| a.fit.bic.total_cmp(&b.fit.bic));
     let mut screen = Screen::new(Standing::Neutral, "COMPARED", String::new());
     if let [best, next, ..] = by_bic.as_slice() {
-        let below = next.fit.bic - best.fit.bic;
-        screen.what = format!(
-            "{} has the least BIC, {below:.1} below {}.",
-            best.name, next.name
-        );
+        // To the digit that is shown, a difference of nothing is a tie.
+        let below = |one: &ComparedFit| format!("{:.1}", one.fit.bic - best.fit.bic);
+        let least = by_bic.iter().filter(|one| below(one) == "0.0");
+        let least = joined(least.map(|one| &one.name), " and ");
+        screen.what = match below(next).as_str() {
+            "0.0" => format!("{least} have the same BIC, the least."),
+            below => format!("{least} has the least BIC, {below} below {}.", next.name),
+        };
     }
     for one in &compared.models {
         screen.fact(&one.name, fit_verdict(&one.fit).1);

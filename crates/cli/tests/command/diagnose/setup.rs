@@ -74,6 +74,29 @@ fn a_wrong_latitude_stops_both_commands() {
 }
 
 #[test]
+fn outputs_of_earlier_runs_do_not_outlive_a_wrong_setup() {
+    let folder = folder();
+    negate_latitude(&folder);
+    for name in ["f.csv", "c.csv", "d.csv"] {
+        folder.put(name, "effect,yesterday\n");
+    }
+    let tables = ["--findings", "f.csv", "--coefficients", "c.csv"];
+    let pictures = ["--figures", "pictures"];
+    let said = folder.succeed([&DIAGNOSE[..], &tables, &pictures].concat());
+    assert_says(
+        &said,
+        "f.csv: not written, as nothing was fitted; the earlier file is removed",
+    );
+    assert_says(&said, "pictures: no pictures, as nothing was fitted");
+    let calibrate = ["calibrate", RECORD, "--bench", BENCH];
+    let errors = folder.run(&[&calibrate[..], &["--coefficients", "d.csv"]].concat());
+    assert_says(&String::from_utf8(errors.stderr).unwrap(), "; d.csv: not");
+    for name in ["f.csv", "c.csv", "d.csv"] {
+        assert!(!folder.path(name).exists(), "{name}");
+    }
+}
+
+#[test]
 fn a_plan_needs_a_sound_setup_whatever_diagnosis_is_given() {
     let folder = folder();
     negate_latitude(&folder);
