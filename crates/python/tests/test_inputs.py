@@ -11,6 +11,7 @@ import pyarrow as pa
 import pytest
 
 import gyrocal
+from gyrocal import fleet
 
 
 def equal(record, other):
@@ -264,11 +265,72 @@ def test_errors_of_files_have_their_place(tmp_path):
     assert isinstance(error, ValueError) and isinstance(error, gyrocal.GyrocalError)
 
 
+def test_an_unknown_effect_is_the_same_error_in_all_functions(simulated):
+    for function in (gyrocal.calibrate, gyrocal.diagnose, gyrocal.plan):
+        with pytest.raises(gyrocal.InputError, match="^effects: there is no effect `gyro_y.g_zz_`") as caught:
+            function(simulated.record, simulated.bench, effects=["gyro_y.g_zz_"])
+        assert (caught.value.found, caught.value.advice is None) == ("gyro_y.g_zz_", False)
+        assert "effects of the catalogue" in caught.value.expected
+
+
+PLANT = "examples/duffing/plant.json"
+SCENARIO = "examples/data/three_days.scenario.toml"
+
+
+@pytest.mark.parametrize(
+    ("call", "place", "found"),
+    [
+        (lambda r, b: gyrocal.plan(r, b, hours="24"), "hours", "'24'"),
+        (lambda r, b: gyrocal.plan(r, b, hours=[True]), "hours", "[True]"),
+        (lambda r, b: gyrocal.plan(r, b, limits_deg={"x": 3.0}), "limits_deg", "{'x': 3.0}"),
+        (lambda r, b: gyrocal.plan(r, b, sigmas="gyro_x.bias"), "sigmas", "'gyro_x.bias'"),
+        (lambda r, b: gyrocal.plan(r, b, diagnosis="d.json"), "diagnosis", "a str"),
+        (lambda r, b: gyrocal.plan(r, b, aim=3), "aim", "3"),
+        (lambda r, b: gyrocal.plan(r, b, effects="gyro_y.g_z"), "effects", "'gyro_y.g_z'"),
+        (lambda r, b: gyrocal.diagnose(r, b, effects="gyro_y.g_z"), "effects", "'gyro_y.g_z'"),
+        (lambda r, b: gyrocal.diagnose(r, b, effects=None), "effects", "None"),
+        (lambda r, b: gyrocal.diagnose(r, b, false_alarm="0.01"), "false_alarm", "'0.01'"),
+        (lambda r, b: gyrocal.diagnose(r, b, later=r), "later", "a Record"),
+        (lambda r, b: gyrocal.calibrate(r, b, effects="gyro_y.g_z"), "effects", "'gyro_y.g_z'"),
+        (lambda r, b: gyrocal.calibrate(r, b, average_s="60"), "average_s", "'60'"),
+        (lambda r, b: gyrocal.calibrate(r, b, noise=1), "noise", "1"),
+        (lambda r, b: gyrocal.characterise(3), "cells", "3"),
+        (lambda r, b: gyrocal.characterise("clean", methods="nis"), "methods", "'nis'"),
+        (lambda r, b: gyrocal.characterise("clean", runs=0), "runs", "0"),
+        (lambda r, b: gyrocal.simulate(SCENARIO, seed=-1), "seed", "-1"),
+        (lambda r, b: gyrocal.simulate(SCENARIO, seed=1.5), "seed", "1.5"),
+        (lambda r, b: gyrocal.simulate(SCENARIO, seed=2**63), "seed", str(2**63)),
+        (lambda r, b: gyrocal.simulate(5), "scenario", "5"),
+        (lambda r, b: gyrocal.report(5, "page.html"), "results", "a int"),
+        (lambda r, b: gyrocal.from_json(5), "text_or_path", "a int"),
+        (lambda r, b: gyrocal.diagnose(pl.LazyFrame(r.columns()), b), "record", "a LazyFrame"),
+        (lambda r, b: gyrocal.Plant(PLANT).diagnose(pl.LazyFrame(r.columns())), "record", "a LazyFrame"),
+        (lambda r, b: gyrocal.Plant(PLANT).diagnose(5), "record", "a int"),
+        (lambda r, b: gyrocal.Plant(PLANT).diagnose({}, 5), "columns", "a int"),
+        (lambda r, b: gyrocal.Plant(PLANT).diagnose({}, false_alarm="0.01"), "false_alarm", "'0.01'"),
+        (lambda r, b: fleet.summarise([], seed=-1), "seed", "-1"),
+        (lambda r, b: fleet.summarise(5), "results", "a int"),
+        (lambda r, b: list(fleet.diagnose_batches("abc")), "batches", "a str"),
+        (lambda r, b: list(fleet.diagnose_batches([], false_alarm="0.01")), "false_alarm", "'0.01'"),
+        (lambda r, b: fleet.diagnose_partitions("none", "none", false_alarm=2), "false_alarm", "2"),
+        (lambda r, b: fleet.batch_of_records("abc"), "records", "a str"),
+    ],
+)
+def test_wrong_arguments_are_one_kind_of_error(simulated, call, place, found):
+    with pytest.raises(gyrocal.InputError) as caught:
+        call(simulated.record, simulated.bench)
+    assert str(caught.value).startswith(f"{place}: found {found}, expected ")
+    assert caught.value.found == found and caught.value.expected
+
+
+def test_arguments_of_other_number_types_are_taken(simulated):
+    made = gyrocal.simulate(SCENARIO, seed=np.int64(3))
+    assert made.manifest.seed == 3
+    planned = gyrocal.plan(simulated.record, simulated.bench, hours=np.array([12.0, 24.0]))
+    assert {run.duration_s for run in planned.proposals} == {12 * 3600.0, 24 * 3600.0}
+
+
 def test_work_that_fails_says_what_to_do(simulated):
-    with pytest.raises(gyrocal.ComputationError) as caught:
-        gyrocal.diagnose(simulated.record, simulated.bench, effects=["gyro_y.g_zz_"])
-    assert "there is no effect `gyro_y.g_zz_`" in str(caught.value)
-    assert caught.value.advice and "What to do" in str(caught.value)
     with pytest.raises(gyrocal.InputError, match="false_alarm"):
         gyrocal.diagnose(simulated.record, simulated.bench, false_alarm=2.0)
     with pytest.raises(gyrocal.InputError, match="3 descriptions for 2 records"):

@@ -42,6 +42,10 @@ def test_numbers_and_names_are_those_of_the_command(tmp_path, found):
     assert "<p>" in found._repr_html_()
     assert pickle.loads(pickle.dumps(found)) == found
     assert str(pickle.loads(pickle.dumps(found))) == str(found)
+    again = gyrocal.from_json(found.to_json())
+    assert type(again) is gyrocal.PlantDiagnosis and again == found and again.summary() == found.summary()
+    assert again.names == [one.name for one in found.coefficients.extended]
+    assert again.conf_int().shape == (len(again.names), 2) and list(again.pvalues) == [found.findings[0].effect]
 
 
 def test_a_declared_plant_takes_frames(found):

@@ -2,15 +2,17 @@
 
 import copy
 import importlib.metadata
+import re
 import subprocess
 import sys
 from pathlib import Path
 
 import numpy as np
+import polars as pl
 import pytest
 
 import gyrocal
-from conftest import ROOT
+from conftest import ROOT, command
 
 
 def test_keys_are_attributes(diagnosed):
@@ -63,6 +65,76 @@ def test_frames(simulated, diagnosed):
     assert coefficients.loc["gyro_x.bias", "estimate"] == calibrated.estimates[0]
     assert list(simulated.record.to_dataframe().columns) == list(gyrocal.COLUMNS[:4])
     assert list(simulated.to_dataframe().name) == calibrated.names
+
+
+def test_frames_of_all_kinds_hold_the_same(simulated, diagnosed):
+    record = simulated.record
+    calibrated = gyrocal.calibrate(record, simulated.bench)
+    for one in (record, simulated, diagnosed, calibrated):
+        by_pandas, by_polars, by_arrow = one.to_pandas(), one.to_polars(), one.to_arrow()
+        assert list(by_pandas.columns) == by_polars.columns == by_arrow.column_names
+        assert by_polars.to_dicts() == by_arrow.to_pylist() == pl.DataFrame(one).to_dicts()
+    assert calibrated.to_polars()["estimate"].to_list() == calibrated.to_pandas().estimate.tolist()
+    assert gyrocal.Record.from_frame(record.to_polars()).sha256 == record.sha256
+
+
+def test_a_missing_package_is_told(monkeypatch, diagnosed):
+    for package, frame in [("pandas", "to_pandas"), ("polars", "to_polars"), ("pyarrow", "to_arrow")]:
+        monkeypatch.setitem(sys.modules, package, None)
+        with pytest.raises(ImportError, match=f"python -m pip install {package}"):
+            getattr(diagnosed, frame)()
+
+
+def test_names_that_other_packages_use(simulated, diagnosed):
+    calibrated = gyrocal.calibrate(simulated.record, simulated.bench)
+    for one in (calibrated, diagnosed):
+        count = len(one.names)
+        assert one.params.shape == one.bse.shape == (count,) and one.cov_params().shape == (count, count)
+        assert np.allclose(one.bse**2, np.diag(one.cov_params()), rtol=1e-9)
+        low, high = one.conf_int().T
+        assert np.all((low < one.params) & (one.params < high))
+    # Of a normal distribution: 1.959964 and 2.575829 standard deviations.
+    for alpha, sigmas in [(0.05, 1.959964), (0.01, 2.575829)]:
+        width = np.diff(calibrated.conf_int(alpha))[:, 0]
+        assert np.allclose(width, 2 * sigmas * calibrated.bse, rtol=1e-6)
+    assert np.array_equal(diagnosed.conf_int(), [one.interval for one in diagnosed.coefficients.over_set])
+    assert diagnosed.pvalues == {one.effect: one.p_value for one in diagnosed.findings}
+    for wrong, one in [(2.0, calibrated), ("a", calibrated), (0.1, diagnosed)]:
+        with pytest.raises(gyrocal.InputError, match="^alpha: found"):
+            one.conf_int(wrong)
+
+
+def test_a_summary_is_the_first_screen_of_the_command(tmp_path):
+    files = ["examples/data/hidden_fault.csv", "examples/data/hidden_fault.bench.toml"]
+    for name in ("diagnose", "calibrate", "plan"):
+        found = getattr(gyrocal, name)(*files)
+        shown = subprocess.run(
+            [command(), name, files[0], "--bench", files[1]], capture_output=True, text=True, check=True
+        ).stdout
+        # The command sets the same words in columns, and its next steps otherwise.
+        facts, screen = (re.sub(r"[-:\s]+", " ", text) for text in (found.summary().split("\n\nNext")[0], shown))
+        assert set(facts.split()) <= set(screen.split())
+        assert str(found).startswith(found.summary()) and len(found.summary()) < len(str(found)) / 2
+
+
+def test_results_are_read_from_json(tmp_path, simulated, diagnosed):
+    calibrated = gyrocal.calibrate(simulated.record, simulated.bench)
+    planned = gyrocal.plan(simulated.record, simulated.bench, diagnosis=diagnosed, hours=24)
+    measured = gyrocal.characterise("clean", runs=1, methods=[])
+    file = tmp_path / "result.json"
+    for one in (calibrated, diagnosed, planned, measured):
+        file.write_text(one.to_json(), encoding="utf-8")
+        for again in (gyrocal.from_json(one.to_json()), gyrocal.from_json(file), gyrocal.from_json(str(file))):
+            assert type(again) is type(one) and again == one and again.summary() == one.summary()
+    for wrong, words in [
+        (simulated.to_json(), "another kind"),
+        ("{", "found no JSON"),
+        ('{"findings": [], "subject": "platform"}', "no whole Diagnosis"),
+        ('{"cells": 1}', "no whole Characteristics"),
+        ("none.json", "cannot be read"),
+    ]:
+        with pytest.raises(gyrocal.InputError, match=words):
+            gyrocal.from_json(wrong)
 
 
 def test_words_and_html_are_those_of_the_command(simulated, diagnosed):

@@ -5,6 +5,7 @@ from typing import assert_type
 
 import numpy as np
 import pandas as pd
+import polars as pl
 import pyarrow as pa
 from numpy.typing import NDArray
 
@@ -23,6 +24,11 @@ calibrated = gyrocal.calibrate(simulated.record, bench)
 assert_type(calibrated, gyrocal.Calibration)
 assert_type(calibrated.covariance, NDArray[np.float64])
 assert_type(calibrated.to_dataframe(), pd.DataFrame)
+assert_type(calibrated.to_polars(), pl.DataFrame)
+assert_type(calibrated.params, NDArray[np.float64])
+assert_type(calibrated.conf_int(alpha=0.1), NDArray[np.float64])
+assert_type(calibrated.summary(), str)
+assert_type(gyrocal.from_json("result.json"), gyrocal.Result)
 
 of_unit = gyrocal.calibrate(simulated.record, bench, gyro_axes=np.zeros((3, 4)))
 assert_type(of_unit, gyrocal.Calibration)
@@ -32,6 +38,7 @@ diagnosed = gyrocal.diagnose(pd.DataFrame(), Path("bench.toml"), false_alarm=0.0
 assert_type(diagnosed, gyrocal.Diagnosis)
 assert_type(diagnosed.verdict, str)
 assert_type(diagnosed.scores, bytes | None)
+assert_type(diagnosed.pvalues, dict[str, float])
 planned = gyrocal.plan(simulated.record, bench, diagnosis=diagnosed, hours=24)
 assert_type(planned, gyrocal.Plan)
 gyrocal.report([calibrated, diagnosed, planned], "page.html")
@@ -57,3 +64,4 @@ gyrocal.diagnose(simulated.record)  # type: ignore[call-arg]
 gyrocal.diagnose(simulated.record, bench, false_alarm="0.01")  # type: ignore[arg-type]
 gyrocal.simulate(3)  # type: ignore[arg-type]
 gyrocal.report(3, "page.html")  # type: ignore[arg-type]
+gyrocal.plan(simulated.record, bench, hours="24")  # type: ignore[arg-type]

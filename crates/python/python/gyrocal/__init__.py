@@ -25,6 +25,7 @@ from ._results import (
     PlantDiagnosis,
     Result,
     Simulation,
+    from_json,
     report,
 )
 
@@ -50,6 +51,7 @@ __all__ = [
     "calibrate",
     "characterise",
     "diagnose",
+    "from_json",
     "plan",
     "report",
     "simulate",

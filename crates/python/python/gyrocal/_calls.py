@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import inspect
 import os
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import cache
-from numbers import Number
+from collections.abc import Iterable, Mapping, Sequence
+from numbers import Real
 from typing import Any, Literal, Union
 
-import numpy as np
-
 from . import _gyrocal
-from ._errors import InputError, SetupError
+from ._arguments import as_list, call, is_rows
+from ._errors import InputError, SetupError, refusal
 from ._record import (
     AxesLike,
     Bench,
@@ -46,8 +43,13 @@ def simulate(scenario: ScenarioLike, *, seed: int | None = None) -> Simulation:
 
     Raises:
         InputError: The scenario makes no sense.
+
+    >>> import gyrocal
+    >>> made = gyrocal.simulate("examples/data/three_days.scenario.toml", seed=3)
+    >>> made.record
+    <gyrocal.Record <simulation>: 4321 rows over 3.00 days>
     """
-    command = _call(simulate, locals())
+    command = call(simulate, locals())
     if isinstance(scenario, Mapping):
         made = _gyrocal.simulate(None, _json(scenario, "<scenario>"), seed, "<simulation>", command)
     else:
@@ -85,41 +87,45 @@ def calibrate(
         noise: Whether the noise is estimated.
         factorised: Carries the covariance of the filter as factors; for ``streaming`` and ``paper``.
 
+    Returns:
+        The coefficients with their standard deviations in deg/h, deg/h/g and deg/h/g^2, their covariance (9, 9),
+        and the verdict whether the record agrees with the model.
+
     Raises:
         InputError: An argument, a record or a bench description is wrong.
         SetupError: A gross error of the set-up leaves nothing sound; its ``result`` tells which.
         ComputationError: The records could not be calibrated.
+
+    >>> import gyrocal
+    >>> found = gyrocal.calibrate("examples/data/three_days.csv", "examples/data/three_days.bench.toml")
+    >>> found
+    <gyrocal.Calibration consistent: 9 coefficients>
+    >>> f"{found.names[0]}: {found.estimates[0]:.4f} +- {found.sigmas[0]:.4f} deg/h"
+    'gyro_x.bias: 0.4116 +- 0.0002 deg/h'
     """
-    effects = list(effects)
-    command = _call(calibrate, locals())
+    effects = as_list(effects)
+    command = call(calibrate, locals())
     given = [as_record(one) for one in _several(records)]
     benches = [as_bench(one) for one in _several(bench)]
     if len(benches) == 1:
         benches *= len(given)
     if not given or len(benches) != len(given):
-        raise InputError(
-            f"bench: found {len(benches)} descriptions for {len(given)} records, expected one for all, "
-            "or one for each",
-            found=str(len(benches)),
-            expected=str(len(given)),
+        raise refusal(
+            "bench", f"{len(benches)} descriptions for {len(given)} records", "one for all, or one for each"
         )
     axes = _several_axes(gyro_axes)
     if gyro_axes is not None and len(axes) != len(given):
-        raise InputError(
-            f"gyro_axes: found {len(axes)} for {len(given)} records, expected one for each, in their order",
-            found=str(len(axes)),
-            expected=str(len(given)),
-        )
+        raise refusal("gyro_axes", f"{len(axes)} for {len(given)} records", "one for each, in their order")
     if axes and (method != "batch" or average_s is not None):
         raise InputError(
             "gyro_axes: they go with the batch estimator, without average_s",
             advice="average the log where it is imported: gyrocal import strapdown --average",
         )
-    _check_calibration(method, len(given), average_s, robust_sigmas, noise, factorised)
+    _check_calibration(method, len(given), robust_sigmas, noise, factorised)
     runs = [(one._held, other._held) for one, other in zip(given, benches)]
     try:
         text = _gyrocal.calibrate(
-            runs, axes, method, factorised, noise, average_s, robust_sigmas, effects, command
+            runs, axes, method, factorised, noise, average_s, robust_sigmas, list(effects), command
         )
     except SetupError as error:
         error.result = Calibration(error.result)
@@ -157,12 +163,28 @@ def diagnose(
         false_alarm: Family-wise probability of a false alarm.
         filter: ``euler`` also tests the consistency of the paper's filter.
 
+    Returns:
+        The verdict, the findings with sizes in their units and alternatives, and the coefficients with them in
+        the model.
+
     Raises:
         InputError: An argument, the record or the bench description is wrong.
         ComputationError: The record could not be diagnosed.
+
+    >>> import gyrocal
+    >>> found = gyrocal.diagnose("examples/data/hidden_fault.csv", "examples/data/hidden_fault.bench.toml")
+    >>> found
+    <gyrocal.Diagnosis effects-found: gyro_y.g_z>
+    >>> size = found.findings[0].parameters[0]
+    >>> f"{size.estimate:.4f} +- {size.sigma:.4f} {size.unit}"
+    '0.0013 +- 0.0001 deg/h/g'
     """
     if filter not in (None, "euler"):
-        raise InputError(f"filter: found {filter!r}, expected 'euler' or None", expected="euler")
+        raise refusal("filter", repr(filter), "'euler' or None")
+    if later is not None and not (isinstance(later, (list, tuple)) and len(later) == 2):
+        raise refusal(
+            "later", f"a {type(later).__name__}", "a record and its bench description", "give (record, bench)"
+        )
     if gyro_axes is not None and filter is not None:
         raise InputError("filter: it is that of a platform, not of a unit with gyro_axes")
     if (later_gyro_axes is not None) != (gyro_axes is not None and later is not None):
@@ -171,8 +193,8 @@ def diagnose(
             "and gyro_axes are given, and only then",
             advice="give the axes of the later record beside those of the record",
         )
-    effects = list(effects)
-    command = _call(diagnose, locals())
+    effects = as_list(effects)
+    command = call(diagnose, locals())
     other = None if later is None else (as_record(later[0])._held, as_bench(later[1])._held)
     answer = _gyrocal.diagnose(
         as_record(record)._held,
@@ -180,7 +202,7 @@ def diagnose(
         other,
         None if gyro_axes is None else as_axes(gyro_axes, "gyro_axes"),
         None if later_gyro_axes is None else as_axes(later_gyro_axes, "later_gyro_axes"),
-        effects,
+        list(effects),
         false_alarm,
         filter is not None,
         command,
@@ -211,22 +233,33 @@ def plan(
             takes them. The next run is then a log of the unit at rest, and angles are those of the unit.
         diagnosis: Result of :func:`diagnose` for this record, with the same ``gyro_axes`` if any; if none is
             given, the record is diagnosed.
-        hours: Durations of the next run; that of the record if none is given.
-        limits_deg: Limits of the platform angles ``x``, ``y``, ``z``, or of those of the unit; before those
-            of the bench.
+        hours: Duration of the next run, or a list of them, h; that of the record if none is given.
+        limits_deg: Limits of the platform angles ``x``, ``y``, ``z``, or of those of the unit, each a pair,
+            deg; before those of the bench.
         aim: Criterion of the ranking; ``set`` if a finding has alternatives.
-        sigmas: Also finds the shortest run after which coefficients have these sigmas.
+        sigmas: Also finds the shortest run after which coefficients, by name, have these sigmas, in their units.
         one_name: Also finds the shortest run after which one effect stays in each confidence set.
         effects: Effects that the diagnosis also tests.
         false_alarm: Family-wise probability of a false alarm of the diagnosis.
 
+    Returns:
+        The proposed runs, the best first, with angles in degrees, durations in seconds and the sigmas that they
+        are expected to give.
+
     Raises:
         InputError: An argument, the record or the bench description is wrong.
         ComputationError: No next run could be planned.
+
+    >>> import gyrocal
+    >>> files = "examples/data/hidden_fault.csv", "examples/data/hidden_fault.bench.toml"
+    >>> gyrocal.plan(*files, diagnosis=gyrocal.diagnose(*files), hours=[12, 24])
+    <gyrocal.Plan by sigmas: ... runs>
     """
-    hours = [hours] if isinstance(hours, (int, float)) else list(hours)
-    effects = list(effects)
-    command = _call(plan, locals())
+    hours = as_list([hours] if isinstance(hours, Real) else hours)
+    effects = as_list(effects)
+    command = call(plan, locals())
+    if not isinstance(diagnosis, (Diagnosis, type(None))):
+        raise refusal("diagnosis", f"a {type(diagnosis).__name__}", "what diagnose returned")
     if diagnosis is not None and (effects or false_alarm != 0.01):
         raise InputError("plan: effects and false_alarm are those of the diagnosis that is given")
     text = _gyrocal.plan(
@@ -234,12 +267,12 @@ def plan(
         as_bench(bench)._held,
         None if gyro_axes is None else as_axes(gyro_axes, "gyro_axes"),
         None if diagnosis is None else diagnosis.to_json(),
-        [float(one) for one in hours],
+        list(map(float, as_list(hours))),
         [(axis, (float(low), float(high))) for axis, (low, high) in (limits_deg or {}).items()],
         aim,
         [(name, float(sigma)) for name, sigma in (sigmas or {}).items()],
         one_name,
-        effects,
+        list(effects),
         false_alarm,
         command,
     )
@@ -267,16 +300,21 @@ def characterise(
         results: A folder that keeps each finished record; a later call goes on from there.
         threads: Number of threads; one per core if it is not given.
 
+    Returns:
+        The figures of each cell with targets and 95 % intervals.
+
     Raises:
         InputError: An argument is wrong.
+
+    >>> import gyrocal
+    >>> measured = gyrocal.characterise("clean", runs=2, seed=40, methods=[])
+    >>> measured.cells[0].seeds
+    [40, 42]
     """
-    cells = [cells] if isinstance(cells, str) else list(cells)
-    methods = None if methods is None else list(methods)
-    command = _call(characterise, locals())
-    for name, value, least in (("runs", runs, 1), ("seed", seed, 0), ("threads", threads, 1)):
-        if value is not None and (not isinstance(value, int) or value < least):
-            raise InputError(f"{name}: found {value!r}, expected an integer of at least {least}")
-    return Characteristics(_gyrocal.characterise(cells, runs, seed, results, methods, threads, command))
+    cells = as_list([cells] if isinstance(cells, str) else cells)
+    methods = None if methods is None else as_list(methods)
+    command = call(characterise, locals())
+    return Characteristics(_gyrocal.characterise(list(cells), runs, seed, results, methods, threads, command))
 
 
 def _several(value: Any) -> list[Any]:
@@ -287,31 +325,15 @@ def _several_axes(value: Any) -> list[tuple[str, Any]]:
     """Axes of each record, with the name of the argument."""
     if value is None:
         return []
-    if not isinstance(value, (list, tuple)) or _is_rows(value):
+    if not isinstance(value, (list, tuple)) or is_rows(value):
         return [("gyro_axes", as_axes(value, "gyro_axes"))]
     named = [(f"gyro_axes[{index}]", one) for index, one in enumerate(value)]
     return [(name, as_axes(one, name)) for name, one in named]
 
 
-def _is_rows(value: Sequence[Any]) -> bool:
-    """Whether these are the rows of one array, and not several things."""
-    first = value[0] if len(value) > 0 else None
-    if isinstance(first, (list, tuple)):
-        return all(isinstance(one, Number) for one in first)
-    return isinstance(first, np.ndarray) and first.ndim == 1
-
-
 def _check_calibration(
-    method: str,
-    records: int,
-    average_s: float | None,
-    robust_sigmas: float | None,
-    noise: bool,
-    factorised: bool,
+    method: str, records: int, robust_sigmas: float | None, noise: bool, factorised: bool
 ) -> None:
-    for name, value in (("average_s", average_s), ("robust_sigmas", robust_sigmas)):
-        if value is not None and not 0.0 < value < float("inf"):
-            raise InputError(f"{name}: found {value!r}, expected a positive number", found=repr(value))
     if method == "batch":
         if factorised:
             raise InputError(
@@ -324,51 +346,3 @@ def _check_calibration(
             f"method: `{method}` reads one record, without robust_sigmas, and estimates no noise",
             advice="leave these out, or use the batch estimator",
         )
-
-
-def _call(function: Callable[..., Any], given: Mapping[str, Any]) -> str:
-    """The call in words, for the manifest: `given` are its arguments, of which defaults are left out."""
-    shown = []
-    for name, default, by_name in _parameters(function):
-        if not _is_default(given[name], default):
-            shown.append(f"{name}={_shown(given[name])}" if by_name else _shown(given[name]))
-    public = [part for part in function.__module__.split(".") if not part.startswith("_")]
-    return f"{'.'.join(public)}.{function.__qualname__}({', '.join(shown)})"
-
-
-@cache
-def _parameters(function: Callable[..., Any]) -> list[tuple[str, Any, bool]]:
-    """Name and default of each parameter, and whether it is given by name."""
-    every = inspect.signature(function).parameters.values()
-    return [(one.name, one.default, one.kind is one.KEYWORD_ONLY) for one in every if one.name != "self"]
-
-
-def _is_default(value: Any, default: Any) -> bool:
-    # Arrays and frames compare element by element.
-    if isinstance(value, (list, tuple)):
-        return default == () and len(value) == 0
-    return value is default or (isinstance(value, (str, Number)) and bool(value == default))
-
-
-def _shown(value: Any) -> str:
-    """A value in words: settings and names as they are, of data the type."""
-    if isinstance(value, np.generic):
-        value = value.item()
-    if isinstance(value, os.PathLike):
-        return repr(os.fspath(value))
-    if isinstance(value, (str, Number)) or value is None:
-        return repr(value)
-    if isinstance(value, (Record, Bench)):
-        return value.name
-    if isinstance(value, (list, tuple)) and not _is_rows(value):
-        return f"[{', '.join(map(_shown, value))}]"
-    if isinstance(value, Mapping) and all(map(_is_setting, value.values())):
-        return f"{{{', '.join(f'{key!r}: {_shown(one)}' for key, one in value.items())}}}"
-    return f"<{type(value).__name__}>"
-
-
-def _is_setting(value: Any) -> bool:
-    """Whether a value of a mapping is a number or a pair of them, and no column of a record."""
-    if isinstance(value, (list, tuple)):
-        return len(value) == 2 and all(isinstance(one, Number) for one in value)
-    return isinstance(value, Number)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-__all__ = ["ComputationError", "GyrocalError", "InputError", "SetupError"]
+__all__ = ["ComputationError", "GyrocalError", "InputError", "SetupError", "refusal"]
 
 
 class GyrocalError(Exception):
@@ -22,6 +22,13 @@ class GyrocalError(Exception):
         advice: What to do.
         causes: The causes, each of the one before it.
         result: The result that tells the same, where there is one.
+
+    >>> import gyrocal
+    >>> try:
+    ...     gyrocal.diagnose("none.csv", "examples/data/three_days.bench.toml")
+    ... except gyrocal.GyrocalError as error:
+    ...     error.file, error.line
+    ('none.csv', None)
     """
 
     def __init__(
@@ -65,12 +72,42 @@ def _restored(kind: type[GyrocalError], message: str, fields: dict[str, Any]) ->
 
 
 class InputError(GyrocalError, ValueError):
-    """An argument, a file, a frame or one of its values is wrong."""
+    """An argument, a file, a frame or one of its values is wrong.
+
+    >>> import gyrocal
+    >>> try:
+    ...     gyrocal.simulate("examples/data/three_days.scenario.toml", seed=-1)
+    ... except gyrocal.InputError as error:
+    ...     print(error)
+    seed: found -1, expected an integer of at least 0 and below 2^63
+    """
 
 
 class SetupError(InputError):
-    """A gross error of the set-up leaves nothing sound; ``result`` tells which."""
+    """A gross error of the set-up leaves nothing sound; ``result`` tells which.
+
+    >>> import gyrocal
+    >>> record = gyrocal.Record.read("examples/data/three_days.csv")
+    >>> metric = gyrocal.Record(record.time_s, 9.80665 * record.accel_g)
+    >>> try:
+    ...     gyrocal.calibrate(metric, "examples/data/three_days.bench.toml")
+    ... except gyrocal.SetupError as error:
+    ...     error.result.setup[0].kind
+    'unit'
+    """
 
 
 class ComputationError(GyrocalError, RuntimeError):
-    """The computation failed."""
+    """The computation failed.
+
+    >>> import gyrocal
+    >>> issubclass(gyrocal.ComputationError, (gyrocal.GyrocalError, RuntimeError))
+    True
+    """
+
+
+def refusal(place: str, found: str, expected: str, advice: str | None = None) -> InputError:
+    """The error of a value other than expected; `place` is the argument, or the frame and its column."""
+    return InputError(
+        f"{place}: found {found}, expected {expected}", found=found, expected=expected, advice=advice
+    )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import os
 from collections.abc import Mapping
+from numbers import Real
 from pathlib import Path
 from typing import Any, Union
 
@@ -12,9 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _gyrocal
-from ._calls import _call
-from ._errors import InputError
-from ._record import _column, _json, refuse_several
+from ._arguments import call
+from ._errors import InputError, refusal
+from ._record import _column, _json, refuse_no_frame
 from ._results import PlantDiagnosis
 
 __all__ = ["Plant"]
@@ -32,6 +33,11 @@ class Plant:
     Args:
         declared: The plant as ``gyrocal_plant.Plant`` declares it, with its functions of CasADi and its
             catalogue of effects, or the path of the program file that such a declaration writes.
+
+    >>> import gyrocal
+    >>> plant = gyrocal.Plant("examples/duffing/plant.json")
+    >>> plant.name, plant.inputs, plant.outputs
+    ('Duffing', ['u'], ['y'])
     """
 
     __slots__ = ("_held", "_program")
@@ -45,10 +51,9 @@ class Plant:
         elif hasattr(declared, "to_json"):
             name, text = f"<{type(declared).__name__}>", declared.to_json()
         else:
-            raise InputError(
-                f"plant: found a {type(declared).__name__}, expected a declared plant or a program file",
-                found=type(declared).__name__,
-                advice="declare it with gyrocal_plant.Plant (docs/any-plant.md)",
+            raise refusal(
+                "plant", f"a {type(declared).__name__}", "a declared plant or a program file",
+                "declare it with gyrocal_plant.Plant (docs/any-plant.md)",
             )
         self._set(text, name)
 
@@ -101,11 +106,20 @@ class Plant:
             later_columns: Its columns, if they differ.
             false_alarm: Family-wise probability of a false alarm.
 
+        Returns:
+            The verdict, the findings with their sets, and the parameters in the units of the plant.
+
         Raises:
             InputError: A record, a column or an argument is wrong.
             ComputationError: The plant could not be fitted.
+
+        >>> import gyrocal
+        >>> plant = gyrocal.Plant("examples/duffing/plant.json")
+        >>> columns = {"time": "time_s", "inputs": {"u": "drive_n"}, "outputs": {"y": "displacement_m"}}
+        >>> plant.diagnose("examples/duffing/record.csv", columns)
+        <gyrocal.PlantDiagnosis of Duffing, effects-found: v_rate.x^3>
         """
-        command = _call(Plant.diagnose, locals())
+        command = call(Plant.diagnose, locals())
         given, own = self._columns(record, columns)
         program, name = self._program
         inputs = [own, *_input_of_map(columns), (name, _sha256(program.encode()))]
@@ -156,6 +170,8 @@ class Plant:
             return {"time": "time_s", **same}
         if isinstance(columns, Mapping):
             return columns
+        if not isinstance(columns, (str, os.PathLike)):
+            raise refusal("columns", f"a {type(columns).__name__}", "a path, or the tables of a map file")
         import tomllib
 
         try:
@@ -183,7 +199,8 @@ def _of_program(text: str, name: str) -> Plant:
 def _time(places: Mapping[str, Any]) -> Source:
     if "time" not in places:
         raise InputError("columns: found no `time`", expected="time", advice="add `time` to the columns")
-    return places["time"]
+    time: Source = places["time"]
+    return time
 
 
 def _frame(record: Any) -> tuple[Any, str, bytes | None]:
@@ -191,7 +208,11 @@ def _frame(record: Any) -> tuple[Any, str, bytes | None]:
     if isinstance(record, (str, os.PathLike)):
         name, content = os.fspath(record), _read(record)
         return _csv(_text(content, name), name), name, content
-    refuse_several(record)
+    refuse_no_frame(record)
+    if not isinstance(record, Mapping) and not any(hasattr(record, one) for one in ("columns", "column_names")):
+        raise refusal(
+            "record", f"a {type(record).__name__}", "a path, a frame, an Arrow table or a mapping of columns"
+        )
     return record, f"<{type(record).__name__}>", None
 
 
@@ -242,14 +263,11 @@ def _csv(text: str, name: str) -> dict[str, NDArray[np.float64]]:
 
 
 def _values(frame: Any, source: Source, name: str) -> NDArray[np.float64]:
-    place = {"column": source} if isinstance(source, str) else dict(source)
+    place = dict(source) if isinstance(source, Mapping) else {"column": source}
     column = place.pop("column", None)
-    factor, offset = float(place.pop("factor", 1.0)), float(place.pop("offset", 0.0))
-    if column is None or place:
-        raise InputError(
-            f"columns: found {source!r}, expected a name, or column, factor and offset",
-            found=repr(source),
-        )
+    factor, offset = place.pop("factor", 1.0), place.pop("offset", 0.0)
+    if column is None or place or not (isinstance(factor, Real) and isinstance(offset, Real)):
+        raise refusal("columns", repr(source), "a name, or column, factor and offset")
     names = list(getattr(frame, "column_names", ())) or list(getattr(frame, "columns", frame))
     if column not in names:
         raise InputError(
@@ -262,7 +280,7 @@ def _values(frame: Any, source: Source, name: str) -> NDArray[np.float64]:
         isinstance(value, str) for value in found
     ):
         found = _parsed(found, column, name)
-    return factor * np.ascontiguousarray(_column(found, column, name)) + offset
+    return float(factor) * np.ascontiguousarray(_column(found, column, name)) + float(offset)
 
 
 def _parsed(texts: NDArray[Any], column: str, name: str) -> NDArray[np.float64]:

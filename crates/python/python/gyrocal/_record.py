@@ -5,16 +5,14 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Union
+from typing import Any, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _gyrocal
-from ._errors import InputError
-
-if TYPE_CHECKING:
-    import pandas as pd
+from ._errors import refusal
+from ._table import Table
 
 __all__ = [
     "COLUMNS",
@@ -32,7 +30,7 @@ __all__ = [
 COLUMNS = ("time_s", "accel_x_g", "accel_y_g", "accel_z_g", "temperature_c")
 
 
-class Record:
+class Record(Table):
     """Accelerometer samples of a platform that its gyros hold in inertial space.
 
     Specific force is in units of local gravity, up positive: an accelerometer at rest with its axis up
@@ -41,8 +39,15 @@ class Record:
     Args:
         time_s: Time of each row, s.
         accel_g: Specific force, one row a sample, along platform axes x, y, z, g.
-        temperature_c: Temperature of each row, if it was logged.
+        temperature_c: Temperature of each row, if it was logged, degrees Celsius.
         name: The name that errors and results give the record.
+
+    >>> import gyrocal
+    >>> record = gyrocal.Record([0.0, 60.0], [[0.0, 0.0, 1.0], [0.0, 0.001, 1.0]])
+    >>> record.time_s.shape, record.accel_g.shape, record.temperature_c
+    ((2,), (2, 3), None)
+    >>> record.to_pandas().columns.tolist()
+    ['time_s', 'accel_x_g', 'accel_y_g', 'accel_z_g']
     """
 
     __slots__ = ("_held",)
@@ -58,7 +63,7 @@ class Record:
     ) -> None:
         samples = _numbers(accel_g, f"{name}, column `accel_g`")
         if samples.ndim != 2 or samples.shape[1] != 3:
-            raise _refusal(
+            raise refusal(
                 f"{name}, `accel_g`", f"the shape {samples.shape}", "(rows, 3)",
                 "give one row a sample: np.column_stack([x, y, z])",
             )
@@ -77,7 +82,11 @@ class Record:
 
     @classmethod
     def read(cls, path: str | os.PathLike[str]) -> Record:
-        """Reads a record from a file (CSV)."""
+        """Reads a record from a file (CSV), whose columns are :data:`COLUMNS`.
+
+        Raises:
+            InputError: The file cannot be read, or a value of it is wrong: with line and column.
+        """
         return cls._of(_gyrocal.Record.read(path))
 
     @classmethod
@@ -87,9 +96,17 @@ class Record:
         The columns are :data:`COLUMNS`. An object with ``__arrow_c_stream__`` (Polars, PyArrow, DuckDB
         and others) is read through Arrow's C stream interface; of a pandas frame or a mapping each
         column is taken as a NumPy array.
+
+        Args:
+            frame: The columns: times in s, specific force in g, temperatures in degrees Celsius.
+            name: The name that errors and results give the record; that of the type if it is not given.
+
+        Raises:
+            InputError: There is no such column, or a value is wrong.
         """
         if name is None:
             name = f"<{type(frame).__name__}>"
+        refuse_no_frame(frame)
         if isinstance(frame, np.ndarray):
             return cls._of(_of_structured(frame, name))
         if isinstance(frame, Mapping):
@@ -101,7 +118,7 @@ class Record:
             names = [str(column) for column in frame.columns]
             _gyrocal.check_columns(names, name)
             return cls._of(_of_mapping({column: frame[column] for column in names}, name))
-        raise _refusal(
+        raise refusal(
             name, f"a {type(frame).__name__}",
             "a path, a Record, a frame, an Arrow table or a mapping of columns",
             "give {'time_s': ..., 'accel_x_g': ..., 'accel_y_g': ..., 'accel_z_g': ...}",
@@ -119,17 +136,17 @@ class Record:
 
     @property
     def time_s(self) -> NDArray[np.float64]:
-        """Time of each row, s; a view."""
+        """Time of each row, (rows,), s; a view."""
         return self._held.time_s
 
     @property
     def accel_g(self) -> NDArray[np.float64]:
-        """Specific force, one row a sample, g; a view."""
+        """Specific force along x, y, z, (rows, 3), g; a view."""
         return self._held.accel_g
 
     @property
     def temperature_c(self) -> NDArray[np.float64] | None:
-        """Temperature of each row, if it was logged; a view."""
+        """Temperature of each row, if it was logged, (rows,), degrees Celsius; a view."""
         return self._held.temperature_c
 
     def columns(self) -> dict[str, NDArray[np.float64]]:
@@ -140,11 +157,8 @@ class Record:
             columns[COLUMNS[4]] = self.temperature_c
         return columns
 
-    def to_dataframe(self) -> pd.DataFrame:
-        """The rows as a pandas frame."""
-        import pandas as pd
-
-        return pd.DataFrame(self.columns())
+    def _columns(self) -> dict[str, NDArray[np.float64]]:
+        return self.columns()
 
     def to_csv(self, path: str | os.PathLike[str]) -> None:
         """Writes the record to a file, which reads as the same numbers."""
@@ -172,6 +186,11 @@ class Bench:
     Args:
         tables: The tables of a bench file, for example ``{"site": {"latitude_deg": 39.1}, ...}``.
         name: The name that errors and results give it.
+
+    >>> import gyrocal
+    >>> bench = gyrocal.Bench.read("examples/data/three_days.bench.toml")
+    >>> bench.latitude_deg, gyrocal.Bench(bench.to_dict()).latitude_deg
+    (48.2, 48.2)
     """
 
     __slots__ = ("_held",)
@@ -203,7 +222,7 @@ class Bench:
 
     @property
     def latitude_deg(self) -> float:
-        """Latitude, north positive."""
+        """Latitude, north positive, deg."""
         return self._held.latitude_deg
 
     def to_dict(self) -> dict[str, Any]:
@@ -240,7 +259,6 @@ def as_record(record: RecordLike) -> Record:
     """The record itself, or what a path, frame, table or mapping gives."""
     if isinstance(record, Record):
         return record
-    refuse_several(record)
     if isinstance(record, (str, os.PathLike)):
         return Record.read(record)
     return Record.from_frame(record)
@@ -254,16 +272,18 @@ def as_bench(bench: BenchLike) -> Bench:
         return Bench.read(bench)
     if isinstance(bench, Mapping):
         return Bench(bench)
-    raise _refusal(
+    raise refusal(
         "bench", f"a {type(bench).__name__}", "a path, a Bench or the tables of a bench file",
         "give {'site': {...}, 'platform': {...}, 'noise': {...}}",
     )
 
 
-def refuse_several(record: Any) -> None:
-    """Refuses a list of records where one is taken."""
+def refuse_no_frame(record: Any) -> None:
+    """Refuses a list of records where one is taken, and a frame that is not read yet."""
+    if type(record).__name__ == "LazyFrame":
+        raise refusal("record", "a LazyFrame", "a frame that holds its rows", "give frame.collect()")
     if isinstance(record, (list, tuple)):
-        raise _refusal(
+        raise refusal(
             "record", f"a {type(record).__name__} of {len(record)}", "one record",
             "calibrate takes several; diagnoses and plans of several records are made by the command",
         )
@@ -278,7 +298,7 @@ def as_axes(axes: AxesLike, name: str) -> NDArray[np.float64] | str:
         return os.fspath(axes)
     array = _numbers(axes, name)
     if array.ndim != 2 or array.shape[1] != 4:
-        raise _refusal(
+        raise refusal(
             name, f"the shape {array.shape}", "(rows, 4)",
             "give one quaternion a row: np.column_stack([q_w, q_x, q_y, q_z])",
         )
@@ -287,7 +307,7 @@ def as_axes(axes: AxesLike, name: str) -> NDArray[np.float64] | str:
 
 def _of_structured(array: NDArray[Any], name: str) -> _gyrocal.Record:
     if array.dtype.names is None:
-        raise _refusal(
+        raise refusal(
             name, f"an array of {array.dtype} without names of columns", "named columns",
             "give Record(time_s, accel_g), or a mapping of columns",
         )
@@ -309,7 +329,7 @@ def _column(values: Any, column: str, name: str) -> NDArray[np.float64]:
     place = f"{name}, column `{column}`"
     array = _numbers(values, place)
     if array.ndim != 1:
-        raise _refusal(place, f"{array.ndim} dimensions", "one", "give one column")
+        raise refusal(place, f"{array.ndim} dimensions", "one", "give one column")
     return array
 
 
@@ -323,29 +343,24 @@ def _numbers(values: Any, place: str) -> NDArray[np.float64]:
     else:
         array = _array(values, place)
     if array.dtype.kind in "iuf":
-        return array.astype(np.float64, copy=False)
+        numbers: NDArray[np.float64] = array.astype(np.float64, copy=False)
+        return numbers
     advice = {
         "M": "give seconds: (t - t[0]) / np.timedelta64(1, 's')",
         "m": "give seconds: t / np.timedelta64(1, 's')",
         "O": "the column holds other things than numbers: pandas.to_numeric(column) shows which",
         "b": "give numbers",
     }.get(array.dtype.kind, "convert the column to float64")
-    raise _refusal(place, f"the type {array.dtype}", "float64", advice)
+    raise refusal(place, f"the type {array.dtype}", "float64", advice)
 
 
 def _array(values: Any, place: str) -> NDArray[Any]:
     try:
         return np.asarray(values)
     except ValueError as error:
-        raise _refusal(
+        raise refusal(
             place, "rows of different lengths", "an array", "give as many values in each row"
         ) from error
-
-
-def _refusal(place: str, found: str, expected: str, advice: str) -> InputError:
-    return InputError(
-        f"{place}: found {found}, expected {expected}", found=found, expected=expected, advice=advice
-    )
 
 
 def _json(tables: Mapping[str, Any], name: str) -> str:
@@ -364,12 +379,12 @@ def _plain(value: Any, name: str, place: str) -> Any:
     if isinstance(value, (list, tuple)):
         return [_plain(inner, name, place) for inner in value]
     if isinstance(value, float) and not np.isfinite(value):
-        raise _refusal(f"{name}, `{place}`", f"{value}", "a finite number", "leave out what is not known")
+        raise refusal(f"{name}, `{place}`", f"{value}", "a finite number", "leave out what is not known")
     if isinstance(value, (bool, int, float, str)):
         return value
     advice = "leave out what is not given" if value is None else "give numbers, strings, lists and tables"
     found = "None" if value is None else f"a {type(value).__name__}"
-    raise _refusal(f"{name}, `{place}`", found, "a value of TOML", advice)
+    raise refusal(f"{name}, `{place}`", found, "a value of TOML", advice)
 
 
 def _write(path: str | os.PathLike[str], text: str) -> None:

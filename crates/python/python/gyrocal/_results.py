@@ -1,22 +1,22 @@
-"""Results: attributes, plain data, frames and HTML."""
+"""The results, each with its attributes and its main table."""
 
 from __future__ import annotations
 
 import json
 import os
-import textwrap
-from collections.abc import Iterable, Iterator
+from pathlib import Path
+from statistics import NormalDist
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _gyrocal
-from ._errors import InputError
+from ._arguments import check
+from ._errors import GyrocalError, InputError, refusal
+from ._result import Fields, Result, report, table
 
 if TYPE_CHECKING:
-    import pandas as pd
-
     from ._record import Bench, Record
 
 __all__ = [
@@ -29,162 +29,113 @@ __all__ = [
     "PlantDiagnosis",
     "Result",
     "Simulation",
+    "from_json",
     "report",
 ]
 
 
-class Fields:
-    """An object of the JSON contract; its keys are attributes."""
+class _Estimates(Result):
+    """Coefficients with their standard deviations, under the names of this package and of statsmodels."""
 
-    __slots__ = ("_fields",)
-    _fields: dict[str, Any]
+    __slots__ = ()
 
-    def __init__(self, fields: dict[str, Any]) -> None:
-        object.__setattr__(self, "_fields", fields)
-
-    def __getattr__(self, name: str) -> Any:
-        if name.startswith("__"):
-            raise AttributeError(name)
-        try:
-            return _wrapped(self._fields[name])
-        except KeyError:
-            known = ", ".join(self._fields)
-            raise AttributeError(f"there is no `{name}`; there are {known}", name=name, obj=self) from None
-
-    def __setattr__(self, name: str, value: Any) -> None:
-        raise AttributeError(f"`{name}` cannot be set: a result does not change")
-
-    def __getitem__(self, name: str) -> Any:
-        return _wrapped(self._fields[name])
-
-    def __contains__(self, name: object) -> bool:
-        return name in self._fields
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._fields)
-
-    def __dir__(self) -> list[str]:
-        return [*super().__dir__(), *self._fields]
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, Fields) and self._fields == other._fields
-
-    def __hash__(self) -> int:
-        return hash(json.dumps(self._fields, sort_keys=True))
-
-    def __repr__(self) -> str:
-        inside = ", ".join(f"{key}={value!r}" for key, value in self._fields.items())
-        return f"Fields({textwrap.shorten(inside, 200, placeholder=' …')})"
-
-    def to_dict(self) -> dict[str, Any]:
-        """The same as plain data: a copy."""
-        return json.loads(json.dumps(self._fields))
-
-
-def _wrapped(value: Any) -> Any:
-    if isinstance(value, dict):
-        return Fields(value)
-    if isinstance(value, list):
-        return [_wrapped(element) for element in value]
-    return value
-
-
-class Result(Fields):
-    """A result. Its keys, those of the JSON contract of the command, are attributes.
-
-    ``str`` gives the first screen and the sections of the page; a notebook shows them.
-    """
-
-    __slots__ = ("_text",)
-    _text: str
-    schema_version: int
-    manifest: Fields
-
-    def __init__(self, text: str) -> None:
-        super().__init__(json.loads(text))
-        object.__setattr__(self, "_text", text)
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        return type(self), (self._text,)
-
-    def to_dict(self) -> dict[str, Any]:
-        """The result as plain data, equal to the JSON that the command writes."""
-        return json.loads(self._text)
-
-    def to_json(self) -> str:
-        """The result as JSON."""
-        return self._text
-
-    def to_dataframe(self) -> pd.DataFrame:
-        """The main table of the result as a pandas frame."""
-        import pandas as pd
-
-        return pd.DataFrame(self._rows())
-
-    def report(self, path: str | os.PathLike[str]) -> None:
-        """Writes the result as an HTML page, one file that needs no network.
-
-        Raises:
-            InputError: There is no page of such a result.
-        """
-        report([self], path)
-
-    def _page(self) -> _gyrocal.PlantPage | None:
-        """What a page needs beside the result."""
-        return None
-
-    def _rows(self) -> list[dict[str, Any]]:
+    def _estimated(self) -> list[dict[str, Any]]:
         raise NotImplementedError
 
-    def _shown(self) -> list[dict[str, Any]]:
-        """Sentences and tables."""
-        return json.loads(_gyrocal.words_of(type(self).__name__, self._text))
+    @property
+    def names(self) -> list[str]:
+        """Names of the coefficients, in the order of all arrays of them."""
+        return [one["name"] for one in self._estimated()]
 
-    def __str__(self) -> str:
-        return _gyrocal.text_of(json.dumps(self._shown())).rstrip("\n")
+    @property
+    def estimates(self) -> NDArray[np.float64]:
+        """The coefficients, each in its unit."""
+        return np.array([one["estimate"] for one in self._estimated()])
 
-    def __repr__(self) -> str:
-        return f"<gyrocal.{type(self).__name__}>"
+    @property
+    def sigmas(self) -> NDArray[np.float64]:
+        """Standard deviations of the coefficients, each in its unit."""
+        return np.array([one["sigma"] for one in self._estimated()])
 
-    def _repr_html_(self) -> str:
-        return _gyrocal.html_of(json.dumps(self._shown()))
+    @property
+    def params(self) -> NDArray[np.float64]:
+        """The same as ``estimates``."""
+        return self.estimates
+
+    @property
+    def bse(self) -> NDArray[np.float64]:
+        """The same as ``sigmas``."""
+        return self.sigmas
+
+    def conf_int(self, alpha: float = 0.05) -> NDArray[np.float64]:
+        """Confidence intervals of the coefficients, from the normal distribution.
+
+        Args:
+            alpha: Probability that an interval misses.
+
+        Returns:
+            Lower and upper ends, (coefficients, 2), each in its unit.
+        """
+        check("alpha", alpha)
+        reach = NormalDist().inv_cdf(1.0 - alpha / 2.0) * self.sigmas
+        return np.column_stack([self.estimates - reach, self.estimates + reach])
 
 
-def report(results: Result | Iterable[Result], path: str | os.PathLike[str]) -> None:
-    """Writes results as one HTML page, one file that needs no network.
+class _Searched(_Estimates):
+    """A search for effects; the coefficients are those with the accepted findings in the model."""
 
-    Args:
-        results: A result, or several in the order of the page: of :func:`gyrocal.calibrate`,
-            :func:`gyrocal.diagnose`, :func:`gyrocal.plan`, :func:`gyrocal.fleet.summarise` and
-            :meth:`gyrocal.Plant.diagnose`.
-        path: The file to write.
+    __slots__ = ()
 
-    Raises:
-        InputError: There is no page of such a result, or there is no result.
+    def _estimated(self) -> list[dict[str, Any]]:
+        found = self._fields["coefficients"]
+        best: list[dict[str, Any]] = found["nominal"] if found["extended"] is None else found["extended"]
+        return best
+
+    @property
+    def pvalues(self) -> dict[str, float]:
+        """The p-value of each finding, corrected for the search, by its effect."""
+        return {one["effect"]: one["p_value"] for one in self._fields["findings"]}
+
+    def conf_int(self, alpha: float = 0.05) -> NDArray[np.float64]:
+        """Confidence intervals of the coefficients.
+
+        With findings they are those of the result, over all members of the confidence sets, where it holds them,
+        and only of 95 %; otherwise from the normal distribution.
+
+        Args:
+            alpha: Probability that an interval misses.
+
+        Returns:
+            Lower and upper ends, (coefficients, 2), each in its unit.
+        """
+        over_set = self._fields["coefficients"]["over_set"]
+        if over_set is None:
+            return super().conf_int(alpha)
+        check("alpha", alpha)
+        if alpha != 0.05:
+            raise refusal("alpha", repr(alpha), "0.05", "the result holds intervals of 95 %")
+        return np.array([one["interval"] for one in over_set])
+
+    def _rows(self) -> list[dict[str, Any]]:
+        """One row a finding; its parameters are columns."""
+        return _finding_rows(self._fields["findings"])
+
+
+class Diagnosis(_Searched):
+    """Result of :func:`gyrocal.diagnose`.
+
+    ``findings`` are the named causes, each with ``parameters`` (``estimate``, ``sigma``, ``unit``) and
+    ``alternatives``; the coefficients are those with the accepted findings in the model.
+
+    >>> import gyrocal
+    >>> found = gyrocal.diagnose("examples/data/hidden_fault.csv", "examples/data/hidden_fault.bench.toml")
+    >>> found.verdict, [one.effect for one in found.findings]
+    ('effects-found', ['gyro_y.g_z'])
+    >>> found.conf_int().shape, found.pvalues["gyro_y.g_z"] < 1e-6
+    ((9, 2), True)
+    >>> print(found.summary().splitlines()[0])
+    FAULT: gyro_y.g_z, mass unbalance of gyro y along the cross axis z (D_O or D_S):
     """
-    given = [results] if isinstance(results, Result) else list(results)
-    for one in given:
-        if not isinstance(one, Result):
-            raise InputError(
-                f"report: found a {type(one).__name__}, expected results",
-                found=type(one).__name__,
-                expected="results",
-                advice="give what calibrate, diagnose, plan, fleet.summarise or Plant.diagnose returned",
-            )
-    if not given:
-        raise InputError(
-            "report: found no result, expected one or more",
-            found="no result",
-            expected="one or more",
-            advice="give what calibrate, diagnose, plan, fleet.summarise or Plant.diagnose returned",
-        )
-    page = _gyrocal.report([(type(one).__name__, one.to_json(), one._page()) for one in given])
-    with open(path, "w", encoding="utf-8", newline="\n") as file:
-        file.write(page)
-
-
-class Diagnosis(Result):
-    """Result of :func:`gyrocal.diagnose`."""
 
     __slots__ = ("_scores",)
     _scores: bytes | None
@@ -193,6 +144,7 @@ class Diagnosis(Result):
     setup: list[Fields]
     findings: list[Fields]
     ranking: list[Fields]
+    coefficients: Fields
     set_ups: Fields | None
     gain: Fields | None
     remainder: Fields
@@ -215,17 +167,32 @@ class Diagnosis(Result):
         """
         return self._scores
 
-    def _rows(self) -> list[dict[str, Any]]:
-        """One row a finding; the parameters are columns."""
-        return _finding_rows(self._fields["findings"])
+    @property
+    def covariance(self) -> NDArray[np.float64]:
+        """Covariance of the coefficients, (coefficients, coefficients), in products of their units."""
+        return np.array(self._fields["coefficients"]["covariance"])
+
+    def cov_params(self) -> NDArray[np.float64]:
+        """The same as ``covariance``."""
+        return self.covariance
 
     def __repr__(self) -> str:
         effects = ", ".join(finding["effect"] for finding in self._fields["findings"])
         return f"<gyrocal.Diagnosis {self.verdict}{': ' + effects if effects else ''}>"
 
 
-class Calibration(Result):
-    """Result of :func:`gyrocal.calibrate`."""
+class Calibration(_Estimates):
+    """Result of :func:`gyrocal.calibrate`: nine drift coefficients in deg/h, deg/h/g and deg/h/g^2.
+
+    >>> import gyrocal
+    >>> found = gyrocal.calibrate("examples/data/three_days.csv", "examples/data/three_days.bench.toml")
+    >>> found.names[:3]
+    ['gyro_x.bias', 'gyro_x.g_x', 'gyro_x.g_xx']
+    >>> found.params.shape, found.bse.shape, found.conf_int().shape, found.cov_params().shape
+    ((9,), (9,), (9, 2), (9, 9))
+    >>> list(found.to_pandas().columns)
+    ['name', 'estimate', 'sigma', 'unit', 'determined']
+    """
 
     __slots__ = ()
     verdict: str
@@ -242,35 +209,36 @@ class Calibration(Result):
     usable: bool
 
     @property
-    def names(self) -> list[str]:
-        """Names of the coefficients, in the order of ``covariance``."""
-        return [coefficient["name"] for coefficient in self._fields["coefficients"]]
-
-    @property
-    def estimates(self) -> NDArray[np.float64]:
-        """The coefficients."""
-        return np.array([one["estimate"] for one in self._fields["coefficients"]])
-
-    @property
-    def sigmas(self) -> NDArray[np.float64]:
-        """Their standard deviations."""
-        return np.array([one["sigma"] for one in self._fields["coefficients"]])
-
-    @property
     def covariance(self) -> NDArray[np.float64]:
-        """Their covariance."""
+        """Covariance of the coefficients, (coefficients, coefficients), in products of their units."""
         return np.array(self._fields["covariance"])
+
+    def cov_params(self) -> NDArray[np.float64]:
+        """The same as ``covariance``."""
+        return self.covariance
+
+    def _estimated(self) -> list[dict[str, Any]]:
+        coefficients: list[dict[str, Any]] = self._fields["coefficients"]
+        return coefficients
 
     def _rows(self) -> list[dict[str, Any]]:
         """One row a coefficient."""
-        return self.to_dict()["coefficients"]
+        return list(self.to_dict()["coefficients"])
 
     def __repr__(self) -> str:
         return f"<gyrocal.Calibration {self.verdict}: {len(self.names)} coefficients>"
 
 
 class Plan(Result):
-    """Result of :func:`gyrocal.plan`."""
+    """Result of :func:`gyrocal.plan`; ``proposals`` are the runs, the best first.
+
+    >>> import gyrocal
+    >>> files = "examples/data/hidden_fault.csv", "examples/data/hidden_fault.bench.toml"
+    >>> planned = gyrocal.plan(*files, hours=24)
+    >>> best = planned.proposals[0]
+    >>> len(best.initial_angles_deg), best.duration_s / 3600
+    (3, 24.0)
+    """
 
     __slots__ = ()
     aim: str
@@ -298,7 +266,15 @@ class Plan(Result):
 
 
 class Characteristics(Result):
-    """Result of :func:`gyrocal.characterise`."""
+    """Result of :func:`gyrocal.characterise`; ``cells`` hold the figures of each cell.
+
+    >>> import gyrocal
+    >>> measured = gyrocal.characterise("clean", runs=1, methods=[])
+    >>> measured
+    <gyrocal.Characteristics: 1 cells>
+    >>> list(measured.to_pandas().columns)[:4]
+    ['cell', 'figure', 'target', 'measured']
+    """
 
     __slots__ = ()
     cells: list[Fields]
@@ -327,14 +303,25 @@ class Characteristics(Result):
             ]
             for row in self._rows()
         ]
-        return [_table("Operating characteristics", heads, ("measured", "runs"), cells)]
+        return [table("Operating characteristics", heads, ("measured", "runs"), cells)]
 
     def __repr__(self) -> str:
         return f"<gyrocal.Characteristics: {len(self._fields['cells'])} cells>"
 
 
 class Fleet(Result):
-    """Result of :func:`gyrocal.fleet.summarise`."""
+    """Result of :func:`gyrocal.fleet.summarise`.
+
+    >>> import gyrocal
+    >>> from gyrocal import fleet
+    >>> made = [gyrocal.simulate("examples/data/hidden_fault.scenario.toml", seed=seed) for seed in range(2)]
+    >>> batch = fleet.batch_of_records((f"unit-{i}", "run-1", x.record, x.bench) for i, x in enumerate(made))
+    >>> together = fleet.summarise(fleet.diagnose_batches([batch]))
+    >>> together.units, together.found_in_units[0].effect
+    (2, 'gyro_y.g_z')
+    >>> together.to_pandas().shape
+    (9, 18)
+    """
 
     __slots__ = ()
     units: int
@@ -370,8 +357,19 @@ class Fleet(Result):
         return f"<gyrocal.Fleet of {self.units} units{': ' + found if found else ''}>"
 
 
-class PlantDiagnosis(Result):
-    """Result of :meth:`gyrocal.Plant.diagnose`. The page of one that was pickled has no charts."""
+class PlantDiagnosis(_Searched):
+    """Result of :meth:`gyrocal.Plant.diagnose`. The page of one that was pickled has no charts.
+
+    The coefficients are parameters and initial states in the units of the plant; the result has no covariance.
+
+    >>> import gyrocal
+    >>> plant = gyrocal.Plant("examples/duffing/plant.json")
+    >>> found = plant.diagnose("examples/duffing/record.csv", "examples/duffing/columns.toml")
+    >>> found.names, found.conf_int().shape
+    (['k', 'c', 'g', 'initial x', 'initial v'], (5, 2))
+    >>> list(found.pvalues)
+    ['v_rate.x^3']
+    """
 
     __slots__ = ("_charts",)
     _charts: _gyrocal.PlantPage | None
@@ -398,17 +396,21 @@ class PlantDiagnosis(Result):
     def _page(self) -> _gyrocal.PlantPage | None:
         return self._charts
 
-    def _rows(self) -> list[dict[str, Any]]:
-        """One row a finding; its parameters are columns."""
-        return _finding_rows(self._fields["findings"])
-
     def __repr__(self) -> str:
         effects = ", ".join(finding["effect"] for finding in self._fields["findings"])
         return f"<gyrocal.PlantDiagnosis of {self.plant}, {self.verdict}{': ' + effects if effects else ''}>"
 
 
 class Simulation(Result):
-    """Result of :func:`gyrocal.simulate`: the truth, and the record and bench description made of it."""
+    """Result of :func:`gyrocal.simulate`: the truth, and the record and bench description made of it.
+
+    >>> import gyrocal
+    >>> made = gyrocal.simulate("examples/data/hidden_fault.scenario.toml")
+    >>> made
+    <gyrocal.Simulation: 4321 rows, seed 39>
+    >>> made.hidden[0].effect, made.record.accel_g.shape, made.bench.latitude_deg
+    ('gyro_y.g_z', (4321, 3), 39.1)
+    """
 
     __slots__ = ("_bench", "_record")
     _bench: Bench
@@ -439,7 +441,7 @@ class Simulation(Result):
 
     def _rows(self) -> list[dict[str, Any]]:
         """One row a true coefficient."""
-        return self.to_dict()["coefficients"]
+        return list(self.to_dict()["coefficients"])
 
     def _shown(self) -> list[dict[str, Any]]:
         hidden = [
@@ -474,8 +476,60 @@ def _finding_rows(findings: list[dict[str, Any]]) -> list[dict[str, Any]]:
     return rows
 
 
-def _table(title: str, heads: list[str], numbers: tuple[str, ...], rows: list[list[str]]) -> dict[str, Any]:
-    """A table of plain cells, as those of the library."""
-    columns = [{"head": head, "is_number": head in numbers} for head in heads]
-    cells = [[{"text": text, "strong": False} for text in row] for row in rows]
-    return {"table": {"title": title, "columns": columns, "rows": cells}}
+#: A key that no other result has, and the class.
+_CLASSES: dict[str, type[Result]] = {
+    "verdict_text": Calibration,
+    "proposals": Plan,
+    "cells": Characteristics,
+    "recurring": Fleet,
+}
+
+
+def from_json(text_or_path: str | os.PathLike[str]) -> Result:
+    """Reads a result that ``to_json`` gave, or that the command wrote with ``--json``.
+
+    Args:
+        text_or_path: The JSON itself, or the path of a file of it.
+
+    Returns:
+        A :class:`Calibration`, :class:`Characteristics`, :class:`Diagnosis`, :class:`Fleet`, :class:`Plan` or
+        :class:`PlantDiagnosis`, as the JSON is. A diagnosis has no ``scores``, and the page of a plant no charts.
+
+    Raises:
+        InputError: The file cannot be read, or holds no such result.
+
+    >>> import gyrocal
+    >>> text = gyrocal.calibrate("examples/data/three_days.csv", "examples/data/three_days.bench.toml").to_json()
+    >>> gyrocal.from_json(text)
+    <gyrocal.Calibration consistent: 9 coefficients>
+    """
+    if not isinstance(text_or_path, (str, os.PathLike)):
+        raise refusal("text_or_path", f"a {type(text_or_path).__name__}", "a text of JSON or a path")
+    name, text = "<text>", text_or_path
+    if isinstance(text, os.PathLike) or not text.lstrip().startswith("{"):
+        name = os.fspath(text)
+        try:
+            text = Path(name).read_text(encoding="utf-8")
+        except (OSError, ValueError) as error:
+            raise InputError(f"{name}: cannot be read: {error}", file=name) from error
+    try:
+        fields = json.loads(text)
+    except ValueError as error:
+        raise InputError(f"{name}: found no JSON: {error}", file=name) from error
+    keys = fields if isinstance(fields, dict) else {}
+    kinds = [kind for key, kind in _CLASSES.items() if key in keys]
+    if {"findings", "subject"} <= set(keys):
+        kinds = [PlantDiagnosis if "plant" in (keys.get("subject") or "") else Diagnosis]
+    if not kinds:
+        raise refusal(
+            name, "JSON of another kind",
+            "a result of calibrate, characterise, diagnose, plan, fleet.summarise or Plant.diagnose",
+            "a simulation is made again from its scenario and seed; json.loads reads any other",
+        )
+    result = kinds[0](text)
+    try:
+        # What is no whole result is told here, and not where it is shown.
+        result._shown()
+    except (GyrocalError, KeyError, TypeError) as error:
+        raise refusal(name, f"no whole {kinds[0].__name__}: {error}", "one that this version wrote") from error
+    return result

@@ -25,8 +25,9 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from . import _gyrocal
-from ._calls import _call, diagnose
-from ._errors import GyrocalError, InputError
+from ._arguments import call, check
+from ._calls import diagnose
+from ._errors import GyrocalError, InputError, refusal
 from ._record import COLUMNS, Bench, Record, as_record
 from ._results import Diagnosis, Fleet
 
@@ -96,9 +97,29 @@ def batch_of_records(records: Iterable[tuple[Any, ...]]) -> pa.RecordBatch:
     """A batch of the input from tuples of unit, name of the record, record and bench description.
 
     A fifth element is a mapping of what else is known, with the keys of :data:`KNOWN`.
+
+    Args:
+        records: The tuples; a record and a bench description as :func:`gyrocal.diagnose` takes them, but for the
+            path of a bench file: a text is that of the file.
+
+    Returns:
+        A batch of the columns :data:`INPUT`, a row for each record: times in s, specific force in g.
+
+    Raises:
+        InputError: An element or a record is wrong.
+
+    >>> import gyrocal
+    >>> from gyrocal import fleet
+    >>> made = gyrocal.simulate("examples/data/hidden_fault.scenario.toml")
+    >>> batch = fleet.batch_of_records([("unit-1", "run-1", made.record, made.bench)])
+    >>> batch.num_rows, batch.schema.names[:3]
+    (1, ['unit', 'record', 'bench'])
     """
     columns: dict[str, list[Any]] = {name: [] for name in INPUT.names}
-    for unit, name, record, bench, *rest in records:
+    for given in records:
+        if not isinstance(given, (list, tuple)) or len(given) not in (4, 5):
+            raise refusal("records", f"a {type(given).__name__}", "tuples of unit, name, record and bench")
+        unit, name, record, bench, *rest = given
         known = rest[0] if rest else {}
         for field in KNOWN:
             columns[field.name].append(known.get(field.name))
@@ -106,9 +127,9 @@ def batch_of_records(records: Iterable[tuple[Any, ...]]) -> pa.RecordBatch:
         columns["unit"].append(unit)
         columns["record"].append(name)
         columns["bench"].append(bench.to_toml() if isinstance(bench, Bench) else bench)
-        given = held.columns()
+        values = held.columns()
         for column in COLUMNS:
-            columns[column].append(given.get(column))
+            columns[column].append(values.get(column))
     arrays = [pa.array(columns[field.name], field.type) for field in INPUT]
     return pa.RecordBatch.from_arrays(arrays, schema=INPUT)
 
@@ -120,10 +141,25 @@ def diagnose_batches(
 
     A record that is wrong gives a row with ``status`` ``failed`` that says what to do; the others go on.
 
+    Args:
+        batches: Batches of the columns :data:`INPUT`.
+        false_alarm: Family-wise probability of a false alarm of each diagnosis.
+
+    Yields:
+        Batches of the columns :data:`OUTPUT`.
+
     Raises:
         InputError: A batch lacks a column, or a column has another type.
+
+    >>> import gyrocal
+    >>> from gyrocal import fleet
+    >>> made = gyrocal.simulate("examples/data/hidden_fault.scenario.toml")
+    >>> batch = fleet.batch_of_records([("unit-1", "run-1", made.record, made.bench)])
+    >>> [row["effects"] for done in fleet.diagnose_batches([batch]) for row in done.to_pylist()]
+    [['gyro_y.g_z']]
     """
-    for batch in batches:
+    check("false_alarm", false_alarm)
+    for batch in _of_arrow("batches", batches):
         rows = [_row(one, false_alarm) for one in _records(batch)]
         columns = [pa.array([row[field.name] for row in rows], field.type) for field in OUTPUT]
         yield pa.RecordBatch.from_arrays(columns, schema=OUTPUT)
@@ -155,8 +191,22 @@ def diagnose_partitions(
         The manifest.
 
     Raises:
-        InputError: There is no partition.
+        InputError: There is no partition, or an argument is wrong.
+
+    >>> import gyrocal
+    >>> from gyrocal import fleet
+    >>> made = gyrocal.simulate("examples/data/hidden_fault.scenario.toml")
+    >>> batch = fleet.batch_of_records([("unit-1", "run-1", made.record, made.bench)])
+    >>> import pathlib, tempfile
+    >>> import pyarrow as pa, pyarrow.parquet as pq
+    >>> folder = pathlib.Path(tempfile.mkdtemp())
+    >>> (folder / "records").mkdir()
+    >>> pq.write_table(pa.Table.from_batches([batch]), folder / "records" / "part-0.parquet")
+    >>> manifest = fleet.diagnose_partitions(folder / "records", folder / "results")
+    >>> manifest["done"], manifest["failed"]
+    (1, [])
     """
+    check("false_alarm", false_alarm)
     source, out = Path(source), Path(out)
     partitions = sorted(source.glob("*.parquet"))
     if not partitions:
@@ -188,8 +238,28 @@ def diagnose_partitions(
 
 
 def read_manifest(out: str | os.PathLike[str]) -> dict[str, Any]:
-    """The manifest of the last call of :func:`diagnose_partitions` with this folder."""
-    return json.loads((Path(out) / _MANIFEST).read_text())
+    """The manifest of the last call of :func:`diagnose_partitions` with this folder.
+
+    Args:
+        out: The folder of the results.
+
+    Returns:
+        What that call returned.
+
+    >>> import gyrocal
+    >>> from gyrocal import fleet
+    >>> made = gyrocal.simulate("examples/data/hidden_fault.scenario.toml")
+    >>> batch = fleet.batch_of_records([("unit-1", "run-1", made.record, made.bench)])
+    >>> import pathlib, tempfile
+    >>> import pyarrow as pa, pyarrow.parquet as pq
+    >>> folder = pathlib.Path(tempfile.mkdtemp())
+    >>> (folder / "records").mkdir()
+    >>> pq.write_table(pa.Table.from_batches([batch]), folder / "records" / "part-0.parquet")
+    >>> manifest = fleet.diagnose_partitions(folder / "records", folder / "results")
+    >>> fleet.read_manifest(folder / "results") == manifest
+    True
+    """
+    return dict(json.loads((Path(out) / _MANIFEST).read_text()))
 
 
 def summarise(
@@ -213,10 +283,20 @@ def summarise(
         outlier_probability: Family-wise probability that a coefficient without outliers shows one.
         seed: Seed of the draws that p-values come from.
 
+    Returns:
+        Coefficients over units with spreads and intervals, recurring causes, and batches and sites that differ.
+
     Raises:
         InputError: An argument is wrong, or no record was diagnosed.
+
+    >>> import gyrocal
+    >>> from gyrocal import fleet
+    >>> made = gyrocal.simulate("examples/data/hidden_fault.scenario.toml")
+    >>> batch = fleet.batch_of_records([("unit-1", "run-1", made.record, made.bench)])
+    >>> fleet.summarise(fleet.diagnose_batches([batch]))
+    <gyrocal.Fleet of 1 units>
     """
-    command = _call(summarise, locals())
+    command = call(summarise, locals())
     records = [_summarised(row) for batch in _batches(results) for row in batch.to_pylist()]
     return Fleet(
         _gyrocal.summarise_fleet(
@@ -235,7 +315,16 @@ def _batches(results: Any) -> Iterator[pa.RecordBatch]:
             with pq.ParquetFile(path) as file:
                 yield from file.iter_batches(BATCH_ROWS, columns=list(_SUMMARISED))
         return
-    yield from results.to_batches() if isinstance(results, pa.Table) else results
+    yield from _of_arrow("results", results)
+
+
+def _of_arrow(name: str, batches: Any) -> Iterator[pa.RecordBatch]:
+    """The batches of an argument: of a table, or those that are given."""
+    given = batches.to_batches() if isinstance(batches, pa.Table) else batches
+    for batch in given if isinstance(given, Iterable) else [given]:
+        if not isinstance(batch, pa.RecordBatch):
+            raise refusal(name, f"a {type(batch).__name__}", "batches of Arrow", "give a list of pyarrow.RecordBatch")
+        yield batch
 
 
 def _finished(out: Path) -> list[Path]:
@@ -300,7 +389,7 @@ def _other_type(column: pa.Array, field: pa.Field) -> InputError:
 def _cells(column: pa.Array) -> list[Any]:
     """The values of a column; lists of numbers are views of its buffer."""
     if not pa.types.is_list(column.type) or len(column) == 0:
-        return column.to_pylist()
+        return list(column.to_pylist())
     ends = column.offsets.to_numpy()
     # A batch may be a part of a larger buffer.
     ends, first = ends - ends[0], ends[0]
@@ -432,7 +521,7 @@ def _is_done(path: Path, out: Path, false_alarm: float) -> bool:
     if note.get("status") != "done" or not (out / path.name).exists():
         return False
     try:
-        return note.get("job") == _job(path, false_alarm)
+        return bool(note.get("job") == _job(path, false_alarm))
     except OSError:
         return False
 
