@@ -24,9 +24,11 @@ const OPEN_INTERVALS: f64 = 4.0;
 /// Rows beyond the unknowns, which the noise is told from.
 const ROWS_FOR_NOISE: usize = 8;
 
-/// Most that an input may be over what 19 of 20 of its values that are not zero stay below. No simulation that goes
-/// through a larger one resolves the others, and steps are halved for it without an end.
+/// Most that an input may be over what 19 of 20 of its values that are not zero stay below, and in its unit: a pulse among
+/// rounding errors is sound, and no unit makes an input as large. No simulation that goes through a larger one resolves
+/// the others, and steps are halved for it without an end.
 const MOST_OVER_USUAL: f64 = 1e6;
+const MOST: f64 = 1e9;
 
 /// Rows of inputs, outputs and logged quantities, of one record or of several that are joined.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -188,7 +190,8 @@ impl PlantRecord {
             let sizes: Vec<f64> = sizes.filter(|size| *size > 0.0).collect();
             let usual = quantile(&sizes, 0.95);
             let mut own = own();
-            let found = own.find(|(_, value)| value.abs() > MOST_OVER_USUAL * usual);
+            let most = MOST.max(MOST_OVER_USUAL * usual);
+            let found = own.find(|(_, value)| value.abs() > most);
             found.map(|(place, _)| (place, usual))
         })
     }
