@@ -20,7 +20,7 @@ use crate::outputs::{manifest_of, refuse_itself, write_answer};
 use crate::page::{self, Views};
 use crate::progress::Progress;
 use crate::records::{Given, with_role};
-use crate::reply::NOTHING_FITTED;
+use crate::reply::WRONG_SET_UP;
 use crate::{Failure, Reply, exit, gyro_axes};
 pub use failed::NotDiagnosed;
 
@@ -185,7 +185,7 @@ fn checked_inputs(arguments: &DiagnoseArguments) -> Result<Vec<(InputRole, &Path
     Ok(roles)
 }
 
-/// The answer of a record whose set-up is wrong: neither pictures nor tables, as nothing was fitted.
+/// The answer of a record whose set-up is wrong: neither pictures nor tables, as the set-up is wrong.
 fn stopped(
     arguments: &DiagnoseArguments,
     mut result: Answer,
@@ -196,9 +196,9 @@ fn stopped(
     let mut answer = Reply::of_answer(&result);
     arguments
         .views
-        .leave_out_figures(NOTHING_FITTED, &mut answer)?;
-    answer.leave_out(arguments.findings.as_deref(), NOTHING_FITTED);
-    answer.leave_out(arguments.coefficients.as_deref(), NOTHING_FITTED);
+        .leave_out_figures(WRONG_SET_UP, &mut answer)?;
+    answer.leave_out(arguments.findings.as_deref(), WRONG_SET_UP);
+    answer.leave_out(arguments.coefficients.as_deref(), WRONG_SET_UP);
     let parts = vec![of_result(&result)];
     page::write(arguments.views.report(), parts, &mut answer)?;
     write_answer(arguments.json.as_deref(), &result, &mut answer)?;

@@ -15,7 +15,7 @@ use crate::{Failure, layout, terminal};
 pub(crate) const RESULT: &str = "the result for programs";
 
 /// Why there is an answer without tables and pictures.
-pub(crate) const NOTHING_FITTED: &str = "as nothing was fitted";
+pub(crate) const WRONG_SET_UP: &str = "as the set-up is wrong";
 
 /// Result of a command: what it says, and the files that it writes.
 #[derive(Debug, Default)]

@@ -14,11 +14,13 @@ use crate::temporary::{TemporaryFolder, file_in, folder_in};
 ///
 /// [`stage`](Self::stage) writes each beside its target under a temporary name;
 /// [`commit`](Self::commit) renames them. Until then nothing that exists is touched, and a
-/// failure or a drop leaves nothing behind. What a killed run left is removed by the next one that
-/// writes there. A file that is replaced keeps its rights.
+/// failure or a drop leaves nothing behind. What a killed run left is removed by one that writes
+/// there a day later. A file that is replaced keeps its rights.
 #[derive(Debug, Default)]
 pub struct Outputs {
     staged: Vec<Staged>,
+    /// Files of an earlier run that this one does not write; of a link, the link.
+    outdated: Vec<PathBuf>,
     folders: Vec<NewFolder>,
     /// Folders that were made around the new ones, from the outermost.
     around: Vec<PathBuf>,
@@ -39,8 +41,6 @@ enum Staged {
     },
     /// A pipe or device, which cannot be replaced by renaming and must not be.
     Stream { content: Vec<u8>, target: PathBuf },
-    /// A file of an earlier run that this one does not write.
-    Outdated(PathBuf),
 }
 
 impl Outputs {
@@ -73,7 +73,7 @@ impl Outputs {
     /// Removes a file, if it is there, together with the appearance of the others: what an earlier run wrote, and
     /// this one has nothing for.
     pub fn remove(&mut self, path: &Path) {
-        self.staged.push(Staged::Outdated(file_behind(path)));
+        self.outdated.push(path.to_owned());
     }
 
     /// Gives all files their names.
@@ -91,14 +91,15 @@ impl Outputs {
                 Staged::Stream { content, target } => {
                     write_stream(&target, &content).map_err(unwritable(&target))?;
                 }
-                Staged::Outdated(target) if target.is_file() => {
-                    fs::remove_file(&target).map_err(unwritable(&target))?;
-                }
-                Staged::Outdated(_) => {}
             }
         }
         for NewFolder { temporary, target } in std::mem::take(&mut self.folders) {
-            fs::rename(temporary.folder.path(), &target).map_err(unwritable(&target))?;
+            place(temporary.folder.path(), &target).map_err(unwritable(&target))?;
+        }
+        for path in std::mem::take(&mut self.outdated) {
+            if path.is_file() {
+                fs::remove_file(&path).map_err(unwritable(&path))?;
+            }
         }
         self.around.clear();
         Ok(())
@@ -217,6 +218,18 @@ pub fn file_behind(path: &Path) -> PathBuf {
         Some(name) => file_behind(parent(path)).join(name),
         None => path.to_owned(),
     }
+}
+
+/// Gives a folder its name; if another run has made one of that name meanwhile, gives it what is in this one.
+fn place(folder: &Path, target: &Path) -> io::Result<()> {
+    if !target.is_dir() {
+        return fs::rename(folder, target);
+    }
+    for entry in fs::read_dir(folder)? {
+        let entry = entry?;
+        place(&entry.path(), &target.join(entry.file_name()))?;
+    }
+    Ok(())
 }
 
 fn parent(path: &Path) -> &Path {

@@ -1,16 +1,20 @@
 //! Temporary files and folders beside outputs. Each is locked while its run lives: a run removes those of killed
-//! runs, which nobody locks.
+//! runs, which nobody locks and nobody has written to for a day. Another machine on the same folder may not see locks.
 
 use std::collections::BTreeSet;
 use std::fs::{self, File, Metadata, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
+use std::time::Duration;
 
 use tempfile::{Builder, NamedTempFile, TempDir};
 
 const PREFIX: &str = ".gyrocal-";
 const SUFFIX: &str = ".tmp";
+
+/// Age from which on what nobody locks counts as left: no run writes for as long.
+const OLD: Duration = Duration::from_secs(24 * 3600);
 
 /// Folders in which this process has removed what killed runs left.
 static SWEPT: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
@@ -29,9 +33,9 @@ pub(crate) fn file_in(folder: &Path, replaced: Option<&Metadata>) -> io::Result<
     sweep_once(folder);
     let make = || {
         let mut builder = builder();
-        // Temporary files are private by default.
+        // Temporary files are private by default, and one that replaces another is until it has its group.
         #[cfg(unix)]
-        builder.permissions(replaced.map_or_else(|| mode(0o666), Metadata::permissions));
+        builder.permissions(replaced.map_or_else(|| mode(0o666), |_| mode(0o600)));
         let made = builder.tempfile_in(folder)?;
         let held = hold(Some(made.as_file()), made.path());
         Ok((made, held))
@@ -89,7 +93,7 @@ fn sweep_once(folder: &Path) {
     }
 }
 
-/// Removes what killed runs left in a folder: what can be locked. Where locks do not work, all stays.
+/// Removes what killed runs left in a folder: what can be locked and is old. Where locks do not work, all stays.
 fn sweep(folder: &Path) {
     let Ok(entries) = fs::read_dir(folder) else {
         return;
@@ -100,7 +104,8 @@ fn sweep(folder: &Path) {
         let Ok(kind) = entry.file_type() else {
             continue;
         };
-        if !name.starts_with(PREFIX) || !name.ends_with(SUFFIX) {
+        let is_ours = name.starts_with(PREFIX) && name.ends_with(SUFFIX);
+        if !is_ours || !is_old(&entry.path()) {
             continue;
         }
         let path = entry.path();
@@ -121,6 +126,12 @@ fn sweep(folder: &Path) {
     }
 }
 
+fn is_old(path: &Path) -> bool {
+    let modified = fs::symlink_metadata(path).and_then(|about| about.modified());
+    let age = modified.ok().and_then(|at| at.elapsed().ok());
+    age.is_some_and(|age| age > OLD)
+}
+
 #[cfg(unix)]
 fn mode(mode: u32) -> fs::Permissions {
     std::os::unix::fs::PermissionsExt::from_mode(mode)
@@ -134,11 +145,11 @@ fn take_rights(file: &File, replaced: &Metadata) -> io::Result<()> {
     let own = file.metadata()?;
     let mut rights = replaced.mode() & 0o7777;
     if own.gid() != replaced.gid() && fchown(file, None, Some(replaced.gid())).is_err() {
-        rights &= !0o070;
+        rights &= !0o7070;
     }
-    if own.uid() != replaced.uid() {
-        // Only the administrator may.
-        let _ = fchown(file, Some(replaced.uid()), None);
+    // Only the administrator may give a file away.
+    if own.uid() != replaced.uid() && fchown(file, Some(replaced.uid()), None).is_err() {
+        rights &= 0o777;
     }
     match file.metadata()?.mode() & 0o7777 == rights {
         true => Ok(()),
@@ -148,7 +159,16 @@ fn take_rights(file: &File, replaced: &Metadata) -> io::Result<()> {
 
 #[cfg(test)]
 mod tests {
+    use std::fs::FileTimes;
+    use std::time::SystemTime;
+
     use super::*;
+
+    fn make_old(path: &Path) {
+        let modified = SystemTime::now() - 2 * OLD;
+        let times = FileTimes::new().set_modified(modified);
+        File::open(path).unwrap().set_times(times).unwrap();
+    }
 
     #[test]
     fn what_killed_runs_left_is_removed_and_what_lives_stays() {
@@ -162,9 +182,18 @@ mod tests {
         fs::write(&file, "half").unwrap();
         fs::write(&other, "of others").unwrap();
         fs::create_dir_all(pictures.join("within")).unwrap();
+        let young = left(".gyrocal-young.tmp");
+        fs::write(&young, "of another machine").unwrap();
+        [&file, &pictures]
+            .into_iter()
+            .for_each(|left| make_old(left));
         let living = file_in(folder.path(), None).unwrap();
         let living_folder = folder_in(folder.path()).unwrap();
-        assert!(!file.exists() && !pictures.exists() && other.exists());
+        assert!(!file.exists() && !pictures.exists());
+        assert!(other.exists() && young.exists());
+        [living.path(), living_folder.folder.path()]
+            .into_iter()
+            .for_each(make_old);
         // A further run meets what lives.
         sweep(folder.path());
         assert!(living.path().exists() && living_folder.folder.path().exists());

@@ -361,6 +361,12 @@ fn outputs_have_the_rights_of_new_files_and_links_stay() {
     write_whole(&link, b"2").unwrap();
     assert!(link.is_symlink());
     assert_eq!(fs::read_to_string(&ours).unwrap(), "2");
+
+    // Of a link the link is removed.
+    let mut outputs = Outputs::new();
+    outputs.remove(&link);
+    outputs.commit().unwrap();
+    assert!(!link.exists() && ours.exists());
 }
 
 #[cfg(unix)]
@@ -401,6 +407,18 @@ fn a_new_folder_appears_with_its_files_or_not_at_all() {
     }
     assert_eq!(fs::read_dir(there("new")).unwrap().count(), 2);
     assert_eq!(fs::read_dir(there("new/pictures")).unwrap().count(), 2);
+
+    // Two runs that make the same folder both have their files there.
+    let [one, other] = ["one", "other"].map(|file| {
+        let mut outputs = Outputs::new();
+        outputs.folder(&there("shared")).unwrap();
+        let path = there("shared").join(file);
+        outputs.stage(&path, file.as_bytes()).unwrap();
+        outputs
+    });
+    one.commit().unwrap();
+    other.commit().unwrap();
+    assert_eq!(fs::read_dir(there("shared")).unwrap().count(), 2);
 
     // What an earlier run wrote goes with the commit, and only then.
     let mut outputs = Outputs::new();

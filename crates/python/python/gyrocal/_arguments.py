@@ -84,7 +84,9 @@ def _is_table(value: Any, fits: Callable[[Any], bool]) -> bool:
 
 
 def _is_pair(value: Any) -> bool:
-    return isinstance(value, (list, tuple)) and len(value) == 2 and all(map(_is_number, value))
+    return not isinstance(value, (str, bytes)) and hasattr(value, "__len__") and len(value) == 2 and all(
+        map(_is_number, value)
+    )
 
 
 #: What arguments hold, by their names, which mean the same in all functions: in words, and as a test.

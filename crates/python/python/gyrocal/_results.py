@@ -77,7 +77,7 @@ class _Estimates(Result):
             Lower and upper ends, (coefficients, 2), each in its unit.
         """
         check("alpha", alpha)
-        reach = NormalDist().inv_cdf(1.0 - alpha / 2.0) * self.sigmas
+        reach = -NormalDist().inv_cdf(alpha / 2.0) * self.sigmas
         return np.column_stack([self.estimates - reach, self.estimates + reach])
 
 

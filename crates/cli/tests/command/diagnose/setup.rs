@@ -85,9 +85,9 @@ fn outputs_of_earlier_runs_do_not_outlive_a_wrong_setup() {
     let said = folder.succeed([&DIAGNOSE[..], &tables, &pictures].concat());
     assert_says(
         &said,
-        "f.csv: not written, as nothing was fitted; the earlier file is removed",
+        "f.csv: not written, as the set-up is wrong; the earlier file is removed",
     );
-    assert_says(&said, "pictures: no pictures, as nothing was fitted");
+    assert_says(&said, "pictures: no pictures, as the set-up is wrong");
     let calibrate = ["calibrate", RECORD, "--bench", BENCH];
     let errors = folder.run(&[&calibrate[..], &["--coefficients", "d.csv"]].concat());
     assert_says(&String::from_utf8(errors.stderr).unwrap(), "; d.csv: not");
