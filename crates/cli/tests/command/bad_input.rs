@@ -313,7 +313,7 @@ fn bad_bench_files_are_shown_where_they_are_wrong() {
             "[noise]",
             "[noises]",
             "b.toml:9:2: found the unknown key `noises`, expected `site`, `platform`, `noise`, \
-             `prior` or `gimbal_limits_deg`",
+             `prior`, `gimbal_limits_deg` or `identification`",
         ),
         (
             "= 0.002",
