@@ -89,7 +89,7 @@ fn outputs_of_earlier_runs_do_not_outlive_a_wrong_setup() {
     );
     assert_says(&said, "pictures: no pictures, as the set-up is wrong");
     let calibrate = ["calibrate", RECORD, "--bench", BENCH];
-    let errors = folder.run(&[&calibrate[..], &["--coefficients", "d.csv"]].concat());
+    let errors = folder.run([&calibrate[..], &["--coefficients", "d.csv"]].concat());
     assert_says(&String::from_utf8(errors.stderr).unwrap(), "; d.csv: not");
     for name in ["f.csv", "c.csv", "d.csv"] {
         assert!(!folder.path(name).exists(), "{name}");
