@@ -1,7 +1,7 @@
 //! Delay and play of inputs.
 
 use gyrocal_answer::Answer;
-use gyrocal_plant::{SearchOptions, diagnose};
+use gyrocal_plant::{PlantRecord, SearchOptions, diagnose};
 use gyrocal_truth::plant::{Kind, Run, Setting, simulate};
 
 use crate::{loaded, prepared};
@@ -91,4 +91,25 @@ fn play_far_above_the_noise_of_the_drive_is_found() {
         "{:?}",
         gyrocal_words::plant::all(&answer)
     );
+}
+
+#[test]
+fn a_pulse_among_rounding_errors_is_sound_and_a_slip_of_the_pen_is_not() {
+    let plant = loaded(Kind::Servo);
+    let with = |value: f64| {
+        let mut run = simulate(&Setting::random(Kind::Servo, SEED, ROWS), None);
+        let inputs = run.inputs.iter_mut().flatten();
+        inputs.for_each(|input| *input *= 1e-17);
+        run.inputs[300][0] = value;
+        let record = PlantRecord {
+            time_s: run.time_s,
+            inputs: run.inputs.concat(),
+            outputs: run.outputs.concat(),
+            ..PlantRecord::default()
+        };
+        record.prepared(plant.description(), "simulated")
+    };
+    assert!(with(1.0).is_ok());
+    let refused = with(1.8e19).unwrap_err().to_string();
+    assert!(refused.contains("is 1.8e19 in row 301"), "{refused}");
 }

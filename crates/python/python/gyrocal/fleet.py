@@ -246,18 +246,12 @@ def read_manifest(out: str | os.PathLike[str]) -> dict[str, Any]:
     Returns:
         What that call returned.
 
-    >>> import gyrocal
-    >>> from gyrocal import fleet
-    >>> made = gyrocal.simulate("examples/data/hidden_fault.scenario.toml")
-    >>> batch = fleet.batch_of_records([("unit-1", "run-1", made.record, made.bench)])
     >>> import pathlib, tempfile
-    >>> import pyarrow as pa, pyarrow.parquet as pq
+    >>> from gyrocal import fleet
     >>> folder = pathlib.Path(tempfile.mkdtemp())
-    >>> (folder / "records").mkdir()
-    >>> pq.write_table(pa.Table.from_batches([batch]), folder / "records" / "part-0.parquet")
-    >>> manifest = fleet.diagnose_partitions(folder / "records", folder / "results")
-    >>> fleet.read_manifest(folder / "results") == manifest
-    True
+    >>> written = (folder / "manifest.json").write_text('{"done": 1, "failed": []}')
+    >>> fleet.read_manifest(folder)["done"]
+    1
     """
     return dict(json.loads((Path(out) / _MANIFEST).read_text()))
 
