@@ -71,6 +71,7 @@ class _Effect:
     index: int
     # Size of a term; what it multiplies.
     term: ca.SX | None = None
+    knee: grammar.Knee | None = None
     regressor: int = 0
     own: bool = False
     equivalents: list[str] = field(default_factory=list)
@@ -100,7 +101,7 @@ class Plant:
         self._rates: dict[str, ca.SX] = {}
         self._densities: dict[str, float] = {}
         self._effects: list[_Effect] = []
-        self._extensions: list[tuple[str, float, float | None]] = []
+        self._extensions: list[tuple[str, float, float | None, float | None]] = []
         self._dropped: list[tuple[str, str]] = []
         self._grammar: bool | None = None
 
@@ -174,10 +175,11 @@ class Plant:
         """Proposes a catalogue beside the effects that are given."""
         self._grammar = True
 
-    def extend(self, ident: str, value: float = 0.0, sigma: float | None = None) -> None:
+    def extend(self, ident: str, value: float = 0.0, sigma: float | None = None, knee: float | None = None) -> None:
         """Takes a term of the catalogue into the equations. Its size becomes a parameter of this name,
-        with its value before a record and the standard deviation of that."""
-        self._extensions.append((ident, float(value), sigma))
+        with its value before a record and the standard deviation of that; a knee becomes one named
+        `IDENT.knee`."""
+        self._extensions.append((ident, float(value), sigma, knee))
 
     def write(self, path: str | Path | None = None) -> None:
         """Writes the program file, by default beside the script."""
@@ -291,9 +293,9 @@ class Plant:
             if self._kinematic(state):
                 continue
             own = units.per_s(state.unit)
-            for ident, words, unit, expression in grammar.functions(symbols):
+            for ident, words, unit, expression, knee in grammar.functions(symbols):
                 self._add(f"{state.name}_rate.{ident}", f"rate of {state.name}: {words}",
-                          units.over(own, unit), "rate", index, expression)
+                          units.over(own, unit), "rate", index, expression, knee)
         rates = ca.vertcat(*[self._rates[s.name] for s in self._states])
         states = ca.vertcat(*[s.sx for s in self._states])
         for index, output in enumerate(self._outputs):
@@ -305,15 +307,18 @@ class Plant:
                 self._add(f"{output.name}.{ident}", f"sensor: {words}",
                           units.over(output.unit or "1", unit), "output", index, expression)
 
-    def _add(self, ident, name, unit, place, index, term) -> None:
+    def _add(self, ident, name, unit, place, index, term, knee=None) -> None:
         if any(other.id == ident for other in self._effects):
             return
-        self._effects.append(_Effect(ident, name, str(term), unit, "term", place, index, term))
+        self._effects.append(_Effect(ident, name, str(term), unit, "term", place, index, term, knee))
+
+    def _unit_of(self, knee: grammar.Knee) -> str:
+        return next(one.unit for one in [*self._states, *self._inputs] if one.name == knee.of)
 
     def _extend(self) -> None:
         """Makes terms of the catalogue nominal ones."""
         of_time = {effect.id for effect in self._of_time(self._constants())}
-        for ident, value, sigma in self._extensions:
+        for ident, value, sigma, knee in self._extensions:
             known = {effect.id: effect for effect in [*self._constants(), *self._effects]}
             if ident in of_time:
                 raise PlantError(f"effect `{ident}` is a function of time and no term of the equations, "
@@ -326,12 +331,21 @@ class Plant:
             effect = known[ident]
             size = self._declare(self._parameters, ident, effect.unit, effect.name, value=value,
                                  sigma=_sigma(ident, sigma), positive=False)
+            term = effect.term
+            if effect.knee:
+                own = effect.knee
+                bend = self._declare(self._parameters, f"{ident}.knee", self._unit_of(own), f"knee of {effect.name}",
+                                     value=own.value if knee is None else float(knee), sigma=own.sigma,
+                                     positive=False)
+                term = ca.substitute(term, own.sx, bend)
+            elif knee is not None:
+                raise PlantError(f"effect `{ident}` has no knee; leave `knee=` out")
             if effect.place == "rate":
                 state = self._states[effect.index].name
-                self._rates[state] = self._rates[state] + size * effect.term
+                self._rates[state] = self._rates[state] + size * term
             else:
                 facts = self._outputs[effect.index].facts
-                facts["expression"] = facts["expression"] + size * effect.term
+                facts["expression"] = facts["expression"] + size * term
             self._effects = [one for one in self._effects if one is not effect]
         self._extensions = []
 
@@ -360,6 +374,10 @@ class Plant:
         every = biases + self._effects
         sizes = ca.SX.sym("size", len(every))
         rates, output = self._with(every, sizes)
+        bent = [e.knee for e in every if e.knee]
+        if bent:
+            knees, places = ca.vertcat(*[one.sx for one in bent]), ca.vertcat(*[one.value for one in bent])
+            rates, output = (ca.substitute(e, knees, places) for e in (rates, output))
         variables = [*self._states, *self._inputs]
         scales = [one.facts["typical"] or 1.0 for one in variables]
         found = dependence.judge(
@@ -461,7 +479,10 @@ class Plant:
         taken = {p.name for p in self._parameters}
         elements += [_element(f"further {e.id}" if e.id in taken else e.id, e.unit, e.name, f"size_{i}")
                      for i, e in enumerate(terms)]
-        parameters = Group("parameters", "Parameters, then sizes of effects.", elements)
+        bent = [e for e in terms if e.knee]
+        elements += [_element(f"{e.id}.knee", self._unit_of(e.knee), f"knee of {e.name}", f"knee_{i}")
+                     for i, e in enumerate(bent)]
+        parameters = Group("parameters", "Parameters, sizes of effects, then knees of these.", elements)
         states = Group("states", "States.", [_element(s.name, s.unit, s.doc, f"state_{i}")
                                              for i, s in enumerate(self._states)])
         inputs = Group("inputs", "Inputs.", [_element(i.name, i.unit, i.doc, f"input_{n}")
@@ -469,11 +490,12 @@ class Plant:
         driven = [s for s in self._states if self._densities[s.name] > 0]
         noise = Group("noise", "Noise of rates.", [
             Element(f"noise_{i}", s.unit, f"noise of the rate of {s.name}") for i, s in enumerate(driven)])
-        rates, output = self._with(terms, parameters.sx[nominal:])
+        rates, output = self._with(terms, parameters.sx[nominal:nominal + len(terms)])
         for i, state in enumerate(driven):
             rates[self._states.index(state)] += noise.sx[i]
-        old = ca.vertcat(*[s.sx for s in [*self._states, *self._parameters, *self._inputs]])
-        new = ca.vertcat(states.sx, parameters.sx[:nominal], inputs.sx)
+        old = ca.vertcat(*[s.sx for s in [*self._states, *self._parameters, *self._inputs]],
+                         *[e.knee.sx for e in bent])
+        new = ca.vertcat(states.sx, parameters.sx[:nominal], inputs.sx, parameters.sx[nominal + len(terms):])
         rates, output = (ca.substitute(e, old, new) for e in (rates, output))
         program = Equations(
             self.name, self.doc, states, rates, output,
@@ -520,6 +542,10 @@ class Plant:
             _table("plant_periods", "PlantPeriod", "Known periods.", [
                 {"id": name, "period_s": seconds} for name, seconds in self._periods]),
             _table("plant_channels", "PlantChannel", "Rates and outputs that effects enter.", channels),
+            _table("plant_knees", "PlantKnee", "Knees of effects.", [
+                {"size": size_of(e), "constant": nominal + len(terms) + position, "unit": self._unit_of(e.knee) or "1",
+                 "value": e.knee.value, "sigma": e.knee.sigma}
+                for position, e in enumerate(e for e in terms if e.knee)]),
             _table("plant_effects", "PlantEffect", "Catalogue of effects.", [
                 {"id": e.id, "name": e.name, "formula": e.formula, "unit": e.unit, "kind": e.kind,
                  "place": e.place, "index": e.index, "size": size_of(e), "regressor": e.regressor,

@@ -86,6 +86,28 @@ def test_a_known_period_gives_waves():
         plant.period("day", 0.0)
 
 
+def test_a_knee_is_a_parameter_and_extends_the_plant_as_one():
+    plant, *_ = oscillator()
+    program = json.loads(plant.to_json())
+    knees = next(table for table in program["tables"] if table["name"] == "plant_knees")
+    fields = [field["name"] for field in knees["fields"]]
+    elements = next(group for group in program["groups"] if group["name"] == "parameters")["elements"]
+    for row in knees["rows"]:
+        knee = dict(zip(fields, row))
+        own = elements[int(knee["constant"])]["id"]
+        assert own == elements[int(knee["size"])]["id"] + ".knee"
+        assert (knee["unit"], knee["value"]) in [("m", 0.5), ("m/s", 0.5)]
+    plant, *_ = oscillator()
+    plant.extend("v_rate.above(x)", -2.0, knee=0.8)
+    tables = {table["name"]: table for table in json.loads(plant.to_json())["tables"]}
+    values = {row[0]: row[2] for row in tables["plant_parameters"]["rows"]}
+    assert values == {"k": 4.0, "v_rate.above(x)": -2.0, "v_rate.above(x).knee": 0.8}
+    plant, *_ = oscillator()
+    plant.extend("v_rate.x^3", knee=0.8)
+    with pytest.raises(PlantError, match="has no knee"):
+        plant.to_json()
+
+
 def test_units_are_parsed():
     assert units.parse("N s/m") == units.parse("kg s^-1")
     assert units.parse("V") == units.parse("W/A")

@@ -4,6 +4,7 @@ mod coloured;
 mod effort;
 mod gauges;
 pub(crate) mod hidden;
+mod knees;
 mod offsets;
 mod oracle;
 mod second;
@@ -49,6 +50,7 @@ pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
     figures.extend(unknown::figures(context, &plants)?);
     figures.extend(coloured::figures(context, &plants)?);
     figures.extend(offsets::figures(context, &plants)?);
+    figures.extend(knees::figures(context, &plants)?);
     figures.push(effort::lines()?);
     figures.push(effort::duration()?.timed(context.is_small()));
     figures.push(effort::interpreted(&plants[Kind::Duffing as usize])?);

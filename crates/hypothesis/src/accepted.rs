@@ -71,7 +71,7 @@ pub(crate) fn value_places<F: FittedModel>(fitted: &F, hypothesis: &Hypothesis) 
             _ => false,
         });
     }
-    let states: Vec<usize> = hypothesis.effect.model_parameters().collect();
+    let states: Vec<usize> = hypothesis.effect.estimated_parameters().collect();
     extension
         .parameters
         .iter()

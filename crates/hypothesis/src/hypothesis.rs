@@ -238,7 +238,7 @@ impl HypothesisSet {
     ) {
         let own = &self.hypotheses[hypothesis];
         if own.effect.has_term() {
-            for parameter in own.effect.model_parameters() {
+            for parameter in own.effect.estimated_parameters() {
                 extension.parameters.push((parameter, f64::INFINITY));
             }
             if let (Some(own), Some(shape)) = (own.effect.shape(), shape) {

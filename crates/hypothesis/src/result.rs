@@ -74,10 +74,14 @@ fn evaluate_with<F: FittedModel>(
     let mut scores = Scores::of(&bank, &hypotheses, &null, None);
     scores.refine(&stage.fitted, context, &hypotheses, &places.values)?;
     // The score of an effect that the others nearly take up tells nothing; its size in the fit does.
+    let effect = set.hypotheses[own.hypothesis].effect;
     let own_score = scores.best[own.hypothesis].get_or_insert_with(|| Best {
         hypothesis: own.hypothesis,
         variant: hypotheses[own.hypothesis].variants.len().saturating_sub(1),
-        statistic: of_sizes(&stage.fitted, &places.values),
+        statistic: of_sizes(
+            &stage.fitted,
+            &places.values[..effect.model_parameters().count().min(places.values.len())],
+        ),
         shape: own.shape.unwrap_or_default(),
         refined: own.shape.is_some(),
         searched: own.searched,
@@ -108,7 +112,6 @@ fn evaluate_with<F: FittedModel>(
         .max_by(|a, b| a.1.total_cmp(&b.1))
         .filter(|(_, advantage)| *advantage > SAME_LIKELIHOOD)
         .and_then(|(other, advantage)| Some((scores.best[other]?, advantage)));
-    let effect = set.hypotheses[own.hypothesis].effect;
     let ln_others = scores.ln_likelihood_of_all(own.hypothesis, penalised);
     let count = context.plant.nominal_parameters;
     let estimates = |columns: &[usize]| stage.products.estimates(&places.values, columns, count);

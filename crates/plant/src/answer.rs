@@ -13,6 +13,7 @@ use gyrocal_record::Manifest;
 use gyrocal_statistics::math::exp;
 use gyrocal_statistics::{chi_square_tail, p_of_least};
 
+use crate::catalogue::KNEE;
 use crate::description::Kind;
 use crate::error::PlantError;
 use crate::fitted::FittedPlant;
@@ -187,7 +188,8 @@ fn in_its_record(record: &PlantRecord, parameters: &mut [Parameter]) -> Option<u
 /// A size, or an onset, in units of the plant: the search has another unit of time.
 fn parameter(plant: &LoadedPlant, effect: &str, one: &EffectEstimate, scale: f64) -> Parameter {
     let mut effects = plant.description.effects.iter();
-    let is_ramp = effects.any(|entry| entry.id == effect && entry.kind == Kind::Ramp);
+    let entry = effects.find(|entry| entry.id == effect);
+    let is_ramp = entry.is_some_and(|entry| entry.kind == Kind::Ramp);
     let factor = if one.name == ONSET {
         scale.recip()
     } else if is_ramp {
@@ -195,6 +197,10 @@ fn parameter(plant: &LoadedPlant, effect: &str, one: &EffectEstimate, scale: f64
     } else {
         1.0
     };
+    // The unknown is the difference from where the search takes the knee to be.
+    let knee = entry.filter(|_| one.name == KNEE);
+    let knee = knee.and_then(|entry| plant.description.knee_of(entry));
+    let declared = knee.map_or(0.0, |knee| knee.value);
     let interval = one.interval.as_ref().map(|pieces| {
         pieces
             .iter()
@@ -203,7 +209,7 @@ fn parameter(plant: &LoadedPlant, effect: &str, one: &EffectEstimate, scale: f64
     });
     Parameter {
         name: one.name.to_owned(),
-        estimate: factor * one.estimate,
+        estimate: declared + factor * one.estimate,
         sigma: one.sigma.map(|sigma| factor * sigma),
         interval,
         unit: one.unit.to_owned(),

@@ -44,6 +44,9 @@ pub(crate) struct Catalogue {
     pub(crate) covariates: Vec<&'static str>,
 }
 
+/// Name of a knee among the parameters of an effect.
+pub(crate) const KNEE: &str = "knee";
+
 /// Weight of time in hours; regressors and steps follow it.
 const RAMP: usize = 0;
 
@@ -244,7 +247,15 @@ impl<'d> Builder<'d> {
         let (kind, parameters) = match entry.kind {
             Kind::Term => {
                 let own = Role::Parameter(self.states + entry.size);
-                (EffectKind::Constant, vec![size(own, None)])
+                let knee = self.description.knee_of(entry).map(|knee| EffectParameter {
+                    name: KNEE,
+                    unit: kept(&knee.unit),
+                    role: Role::Knee(self.states + knee.constant),
+                    scale: 1.0,
+                    weight: None,
+                });
+                let all = core::iter::once(size(own, None)).chain(knee);
+                (EffectKind::Constant, all.collect())
             }
             Kind::Ramp => {
                 let own = self.modulated(entry, Modulation::Weight(RAMP));

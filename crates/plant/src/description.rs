@@ -8,7 +8,7 @@ use gyrocal_codegen::Program;
 use gyrocal_statistics::math::{cos, sin};
 
 use crate::error::PlantError;
-use rows::{channel, effect, rows};
+use rows::{channel, effect, knee, rows};
 
 /// A state.
 #[derive(Clone, Debug, PartialEq)]
@@ -170,6 +170,21 @@ pub struct EffectEntry {
     pub equivalents: Vec<String>,
 }
 
+/// Where an effect bends: a constant parameter of the model, estimated with the size of its effect.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Knee {
+    /// The parameter that is the size of its effect.
+    pub size: usize,
+    /// The parameter that it is.
+    pub constant: usize,
+    /// Unit.
+    pub unit: String,
+    /// Where the search takes it to be.
+    pub value: f64,
+    /// Standard deviation of that.
+    pub sigma: f64,
+}
+
 /// A plant, but for its functions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Description {
@@ -195,6 +210,8 @@ pub struct Description {
     pub channels: Vec<Channel>,
     /// Catalogue.
     pub effects: Vec<EffectEntry>,
+    /// Knees of effects of the catalogue.
+    pub knees: Vec<Knee>,
 }
 
 impl Description {
@@ -275,11 +292,19 @@ impl Description {
             })?,
             channels: rows(program, "plant_channels", channel)?,
             effects: rows(program, "plant_effects", effect)?,
+            knees: rows(program, "plant_knees", knee)?,
         })
     }
 }
 
 impl Description {
+    /// The knee of a term of the catalogue, if it has one.
+    pub(crate) fn knee_of(&self, entry: &EffectEntry) -> Option<&Knee> {
+        let is_term = entry.kind == Kind::Term;
+        let mut knees = self.knees.iter();
+        knees.find(|knee| is_term && knee.size == entry.size)
+    }
+
     /// Number of logged quantities and of waves.
     pub(crate) fn regressor_count(&self) -> usize {
         self.regressors.len() + 2 * self.periods.len()

@@ -2,6 +2,7 @@
 
 use gyrocal_answer::Answer;
 
+use crate::catalogue::KNEE;
 use crate::description::Kind;
 use crate::error::PlantError;
 use crate::loaded::LoadedPlant;
@@ -15,6 +16,8 @@ pub struct ExtensionTerm {
     pub value: f64,
     /// Standard deviation of the size.
     pub sigma: f64,
+    /// Where it bends, of a term that has a knee.
+    pub knee: Option<f64>,
 }
 
 /// What a diagnosis extends a plant by.
@@ -41,6 +44,11 @@ impl Extension {
                     effect: finding.effect.clone(),
                     value: size.estimate,
                     sigma: size.sigma.unwrap_or(0.0),
+                    knee: finding
+                        .parameters
+                        .iter()
+                        .find(|own| own.name == KNEE)
+                        .map(|own| own.estimate),
                 }),
                 (kind, _) => {
                     let why = match kind {
@@ -79,7 +87,9 @@ impl Extension {
                     let start = format!("{name}.extend(\"{}\"", term.effect);
                     if !script.contains(&start) {
                         let (value, sigma) = (rounded(term.value, 6), rounded(term.sigma, 2));
-                        text += &format!("{indent}{start}, {value})  # ± {sigma}\n");
+                        let knee = term.knee.map(|knee| format!(", knee={}", rounded(knee, 6)));
+                        let knee = knee.unwrap_or_default();
+                        text += &format!("{indent}{start}, {value}{knee})  # ± {sigma}\n");
                     }
                 }
             }
@@ -115,6 +125,7 @@ mod tests {
                 effect: "v_rate.x^3".to_owned(),
                 value: -0.050_142_37,
                 sigma: 4.612e-4,
+                knee: None,
             }],
             left_out: Vec::new(),
         };

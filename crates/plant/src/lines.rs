@@ -123,6 +123,9 @@ impl Course {
         let declared = plant.description.parameters.iter().map(|one| one.value);
         let mut constant: Vec<f64> = declared.collect();
         constant.resize(plant.functions.sizes().parameters, 0.0);
+        for knee in &plant.description.knees {
+            constant[knee.constant] = knee.value;
+        }
         Self {
             constant,
             ..Self::default()

@@ -132,7 +132,9 @@ impl<'a> Informed<'a> {
         let gram = gram.select_rows(&columns).select_columns(&columns);
         let mut now = without_last(gram, &[&sigmas, own.sigmas()].concat())?;
         for (place, parameter) in unknowns.iter().enumerate() {
-            if let Some(sigma) = fitted.problem.prior_sigma.get(*parameter) {
+            let problem = &fitted.problem;
+            let nominal = problem.prior_sigma.get(*parameter).copied();
+            if let Some(sigma) = nominal.or_else(|| problem.sigma_of_knee(*parameter)) {
                 now[(place, place)] += sigma.powi(-2);
             }
         }

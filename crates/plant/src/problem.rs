@@ -99,7 +99,10 @@ impl Problem {
     /// Standard deviations of the unknowns of a model before the record: nominal ones, those of the extension,
     /// initial states of later records.
     pub(crate) fn sigmas(&self, extension: &ModelExtension) -> Vec<f64> {
-        let own = extension.parameters.iter().map(|(_, sigma)| *sigma);
+        let own = extension.parameters.iter().map(|(parameter, sigma)| {
+            let own = self.sigma_of_knee(*parameter);
+            own.map_or(*sigma, |own| own.min(*sigma))
+        });
         let columns = extension.columns.sigmas().iter().copied();
         let states = &self.prior_sigma[..self.plant.description.states.len()];
         let later = self.record.starts.iter().flat_map(|_| states).copied();
@@ -110,6 +113,15 @@ impl Problem {
             .chain(columns)
             .chain(later)
             .collect()
+    }
+
+    /// Standard deviation before the record of a parameter of the table of the plant that is a knee.
+    pub(crate) fn sigma_of_knee(&self, parameter: usize) -> Option<f64> {
+        let description = &self.plant.description;
+        let constant = parameter.checked_sub(description.states.len())?;
+        let mut knees = description.knees.iter();
+        let own = knees.find(|knee| knee.constant == constant);
+        own.map(|knee| knee.sigma)
     }
 
     /// States at the first row, from the unknowns.

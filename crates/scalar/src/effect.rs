@@ -133,6 +133,9 @@ pub enum Role {
     Onset(Option<usize>),
     /// Time constant, h; its index among the model's shapes.
     TimeConstant(usize),
+    /// Where a term bends: a constant parameter of the model with this index, which is its difference from the value
+    /// that the search takes. A term of the size zero does not tell it.
+    Knee(usize),
     /// A property of the noise.
     Noise,
 }
@@ -236,6 +239,16 @@ impl Effect {
             })
     }
 
+    /// The same of its sizes and knees: what a model estimates that has it.
+    pub fn estimated_parameters(&self) -> impl Iterator<Item = usize> + use<> {
+        self.parameters
+            .iter()
+            .filter_map(|parameter| match parameter.role {
+                Role::Parameter(index) | Role::Knee(index) => Some(index),
+                _ => None,
+            })
+    }
+
     /// Its onset or time constant, if it has one.
     #[must_use]
     pub fn shape(&self) -> Option<&'static EffectParameter> {
@@ -244,11 +257,11 @@ impl Effect {
             .find(|parameter| parameter.role.is_shape())
     }
 
-    /// Its parameters but onset and time constant.
+    /// Its parameters but onset, time constant and knee.
     pub fn sizes(&self) -> impl Iterator<Item = &'static EffectParameter> + use<> {
-        self.parameters
-            .iter()
-            .filter(|parameter| !parameter.role.is_shape())
+        self.parameters.iter().filter(|parameter| {
+            !parameter.role.is_shape() && !matches!(parameter.role, Role::Knee(_))
+        })
     }
 
     /// The rate channel that it enters, if it enters exactly one.

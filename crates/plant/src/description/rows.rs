@@ -6,7 +6,7 @@ use serde::Deserialize;
 use serde::de::IntoDeserializer as _;
 use serde::de::value::Error as WordError;
 
-use super::{Channel, EffectEntry, Kind, Place};
+use super::{Channel, EffectEntry, Kind, Knee, Place};
 use crate::error::PlantError;
 
 pub(super) fn channel(row: &Row<'_>) -> Result<Channel, PlantError> {
@@ -45,6 +45,16 @@ pub(super) fn effect(row: &Row<'_>) -> Result<EffectEntry, PlantError> {
         place: place(row)?,
         size: row.index("size")?,
         equivalents: row.texts("equivalents")?,
+    })
+}
+
+pub(super) fn knee(row: &Row<'_>) -> Result<Knee, PlantError> {
+    Ok(Knee {
+        size: row.index("size")?,
+        constant: row.index("constant")?,
+        unit: row.text("unit")?,
+        value: row.number("value")?,
+        sigma: row.number("sigma")?,
     })
 }
 

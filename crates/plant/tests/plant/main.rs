@@ -7,6 +7,7 @@ mod fit;
 mod gauge;
 mod generated;
 mod input_errors;
+mod knee;
 mod left_out;
 mod next_run;
 mod population;

@@ -26,6 +26,9 @@ pub(super) const FACTS: Facts = Facts {
     simulate,
 };
 
+/// A usual displacement, m.
+const TYPICAL: f64 = 1.0;
+
 fn simulate(setting: &Setting, replayed: Option<&[Vec<f64>]>) -> Run {
     let [stiffness, damping, gain] = core::array::from_fn(|index| setting.parameters[index]);
     let drive = Multisine::new(&mut Stream::new(setting.seed, 1), 1.6, [0.05, 0.8]);
@@ -37,6 +40,8 @@ fn simulate(setting: &Setting, replayed: Option<&[Vec<f64>]>) -> Run {
             + size("v_rate.x^2") * x * x
             + size("v_rate.v|v|") * v * v.abs()
             + size("v_rate.x u") * x * u
+            + size("v_rate.above(x)") * (x - TYPICAL * setting.knee).max(0.0)
+            + size("v_rate.beyond(x)") * (x.abs() - TYPICAL * setting.knee).max(0.0).copysign(x)
             + size("v_rate.bias");
         [v, gain * u - spring - damping * v + extra]
     };

@@ -77,6 +77,8 @@ pub struct Setting {
     pub hidden: (&'static str, f64),
     /// Share of the record at which a step begins.
     pub onset: f64,
+    /// Where a term bends, over the usual size of its variable.
+    pub knee: f64,
     /// Noise over the usual one; none at 0.
     pub noise: f64,
     /// Rows.
@@ -84,6 +86,9 @@ pub struct Setting {
     /// Seed of inputs and noise.
     pub seed: u64,
 }
+
+/// A knee is here unless a record says otherwise.
+const KNEE: f64 = 0.5;
 
 impl Setting {
     /// A plant of a population, without a hidden effect.
@@ -104,6 +109,7 @@ impl Setting {
                 .collect(),
             hidden: ("", 0.0),
             onset: random.between(0.2, 0.8),
+            knee: KNEE,
             noise: 1.0,
             rows,
             seed,

@@ -27,8 +27,8 @@ pub(super) const FACTS: Facts = Facts {
     simulate,
 };
 
-/// Level at which the upper tank begins to overflow.
-const BRIM: f64 = 5.0;
+/// Height of the upper tank; its overflow is at a share of it.
+const HEIGHT: f64 = 10.0;
 
 /// The highest reading of the sensor.
 const FULL: f64 = 10.0;
@@ -43,7 +43,7 @@ fn simulate(setting: &Setting, replayed: Option<&[Vec<f64>]>) -> Run {
         let out = k[2] + setting.step("k3.step", at.share);
         [
             k[3] * u - k[0] * root(upper)
-                + size("upper_rate.above(upper)") * (upper - BRIM).max(0.0)
+                + size("upper_rate.above(upper)") * (upper - HEIGHT * setting.knee).max(0.0)
                 + size("upper_rate.upper") * upper
                 + size("upper_rate.pump^2") * u * u,
             k[1] * root(upper) - out * root(lower)
