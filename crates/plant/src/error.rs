@@ -56,8 +56,10 @@ pub enum PlantError {
              columns, and the values of the parameters"
     )]
     NoFit {
-        /// The failure of the last start.
+        /// The failure of the start that came nearest, and where it ended.
         reason: String,
+        /// Its cost, and the values of its unknowns.
+        reached: Option<Box<(f64, Vec<f64>)>>,
     },
     /// One of several models fails.
     #[error("{name}: {reason}")]

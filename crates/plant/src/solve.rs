@@ -361,5 +361,6 @@ impl<'a> Solver<'a> {
 fn no_fit(reason: &str) -> PlantError {
     PlantError::NoFit {
         reason: reason.to_owned(),
+        reached: None,
     }
 }

@@ -8,6 +8,7 @@
 use gyrocal_answer::Starts;
 use gyrocal_hypothesis::ModelExtension;
 use gyrocal_statistics::deviates::Draw;
+use gyrocal_statistics::format::short;
 use gyrocal_statistics::math::exp;
 
 use crate::dynamics::Dynamics;
@@ -55,7 +56,7 @@ pub(crate) fn best(
     first: Option<&[f64]>,
 ) -> Result<(Solution, Starts), PlantError> {
     let mut found: Vec<Solution> = Vec::new();
-    let mut reason = String::new();
+    let mut failed = Failed::default();
     let mut starts = Starts {
         tried: 1,
         agreeing: 0,
@@ -64,7 +65,7 @@ pub(crate) fn best(
     let values = first.unwrap_or(&declared);
     match simulated(problem, noise, values) {
         Ok(solution) => found.push(solution),
-        Err(error) => reason = words(error),
+        Err(error) => failed.take(error),
     }
     let count = problem
         .record
@@ -89,7 +90,7 @@ pub(crate) fn best(
         starts.tried += 1;
         match led(problem, noise, &values) {
             Ok(solution) => found.push(solution),
-            Err(error) => reason = words(error),
+            Err(error) => failed.take(error),
         }
         found.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     }
@@ -97,14 +98,57 @@ pub(crate) fn best(
     starts.agreeing = found.iter().filter(|one| one.cost - least < SAME).count();
     let best = found.into_iter().next();
     best.map(|best| (best, starts))
-        .ok_or(PlantError::NoFit { reason })
+        .ok_or_else(|| failed.of(problem, count))
 }
 
-/// The reason of a failure.
-fn words(error: PlantError) -> String {
-    match error {
-        PlantError::NoFit { reason } => reason,
-        other => other.to_string(),
+/// Why starts failed, and how near the nearest came.
+#[derive(Default)]
+struct Failed {
+    reason: String,
+    reached: Option<Box<(f64, Vec<f64>)>>,
+}
+
+impl Failed {
+    /// Takes another failure in, if it came nearer.
+    fn take(&mut self, error: PlantError) {
+        let (reason, reached) = match error {
+            PlantError::NoFit { reason, reached } => (reason, reached),
+            other => (other.to_string(), None),
+        };
+        let cost = |one: &Option<Box<(f64, Vec<f64>)>>| one.as_ref().map(|one| one.0);
+        let nearer = match (cost(&reached), cost(&self.reached)) {
+            (Some(new), Some(old)) => new < old,
+            (new, old) => new.is_some() || old.is_none(),
+        };
+        if nearer {
+            *self = Self { reason, reached };
+        }
+    }
+
+    /// The error, with the best fit so far in words.
+    fn of(self, problem: &Problem, readings: usize) -> PlantError {
+        let Self {
+            mut reason,
+            reached,
+        } = self;
+        if let Some((cost, values)) = reached.as_deref() {
+            let description = &problem.plant.description;
+            let states = description.states.iter();
+            let states = states.map(|one| (format!("initial {}", one.id), one.initial, &one.unit));
+            let parameters = description.parameters.iter();
+            let parameters = parameters.map(|one| (one.id.clone(), one.value, &one.unit));
+            let all = states.chain(parameters).zip(values);
+            let all = all.map(|((name, declared, unit), value)| {
+                format!("{name} {} {unit}", short(declared + value, 4))
+            });
+            let all: Vec<String> = all.collect();
+            reason += &format!(
+                "; the best fit so far leaves residuals of {} times the declared noise, at {}",
+                short((cost / readings.max(1) as f64).sqrt(), 3),
+                all.join(", ")
+            );
+        }
+        PlantError::NoFit { reason, reached }
     }
 }
 

@@ -49,10 +49,20 @@ pub(super) fn figures(context: &Context, plants: &[LoadedPlant]) -> Result<Vec<F
     let fitted =
         |said: fn(&Said) -> bool| move |one: &Of<Said>| one.found.fits.then(|| said(&one.found));
     let rows = [
-        Row::share("any plant: a knee of d >= 8: in a set", fitted(|said| said.holds)),
-        Row::share("... another effect named beside it", fitted(|said| said.another)),
-        Row::share("... its knee in the 95 % interval", |one: &Of<Said>| one.found.knee),
-        Row::share("... its size in the 95 % interval", |one: &Of<Said>| one.found.size),
+        Row::share(
+            "any plant: a knee of d >= 8: in a set",
+            fitted(|said| said.holds),
+        ),
+        Row::share(
+            "... another effect named beside it",
+            fitted(|said| said.another),
+        ),
+        Row::share("... its knee in the 95 % interval", |one: &Of<Said>| {
+            one.found.knee
+        }),
+        Row::share("... its size in the 95 % interval", |one: &Of<Said>| {
+            one.found.size
+        }),
     ];
     context.measure(&population, &rows)
 }

@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 
 use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
 
-use super::{CONVERGED, ENOUGH, Iterate, Normal, PATIENCE, STALLED, Solution, Solver, no_fit};
+use super::{CONVERGED, ENOUGH, Iterate, Normal, PATIENCE, STALLED, Solution, Solver};
 use crate::dynamics::Dynamics;
 use crate::error::PlantError;
 use crate::linearised::Linearised;
@@ -90,10 +90,10 @@ impl Solver<'_> {
             match next {
                 Some(next) => at = next,
                 None if promised < stalled => return Ok(self.found(at)),
-                None => return Err(no_fit("no step lowers the residuals")),
+                None => return Err(ended("no step lowers the residuals", at)),
             }
         }
-        Err(no_fit("the steps do not end"))
+        Err(ended("the steps do not end", at))
     }
 
     /// Values after a step, no parameter by more than [`LONGEST`].
@@ -146,6 +146,14 @@ impl Solver<'_> {
             is_damped: true,
             at: at.iterate,
         }
+    }
+}
+
+/// A fit that ended before the least cost.
+fn ended(reason: &str, at: At) -> PlantError {
+    PlantError::NoFit {
+        reason: reason.to_owned(),
+        reached: Some(Box::new((at.normal.cost, at.iterate.values))),
     }
 }
 

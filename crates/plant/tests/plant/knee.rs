@@ -35,7 +35,11 @@ fn a_stop_is_found_with_its_place() {
         let sigma = own.sigma.unwrap();
         let off = (own.estimate - truth).abs();
         assert!(off < 4.0 * sigma, "{name} {} ± {sigma}", own.estimate);
-        assert!(sigma < 0.2 * truth.abs(), "{name} {} ± {sigma}", own.estimate);
+        assert!(
+            sigma < 0.2 * truth.abs(),
+            "{name} {} ± {sigma}",
+            own.estimate
+        );
     }
     let extension = Extension::of(&plant, &answer);
     let script = extension.script("plant.write()\n", "plant.py").unwrap();
