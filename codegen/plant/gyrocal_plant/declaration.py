@@ -77,6 +77,16 @@ class _Effect:
     equivalents: list[str] = field(default_factory=list)
 
 
+@dataclass
+class _Late:
+    """An input as it acts, a dead time after it is logged."""
+
+    sx: ca.SX
+    # The input, and the parameter that is its dead time.
+    index: int
+    parameter: int
+
+
 class Plant:
     """States, parameters, inputs, outputs and noise of a plant, with its equations.
 
@@ -96,6 +106,7 @@ class Plant:
         self._parameters: list[_Symbol] = []
         self._inputs: list[_Symbol] = []
         self._outputs: list[_Symbol] = []
+        self._late: list[_Late] = []
         self._regressors: list[str] = []
         self._periods: list[tuple[str, float]] = []
         self._rates: dict[str, ca.SX] = {}
@@ -123,6 +134,25 @@ class Plant:
               typical: float | None = None, doc: str = "") -> ca.SX:
         """A measured input: held from row to row, or interpolated."""
         return self._declare(self._inputs, name, unit, doc, interpolate=interpolate, typical=typical)
+
+    def delay(self, logged: ca.SX, unit: str = "s", value: float = 0.0, sigma: float | None = None,
+              doc: str = "") -> ca.SX:
+        """An input as it acts: a dead time after it is logged. The dead time is a parameter named
+        `INPUT.delay`, in seconds, with its value before a record and the standard deviation of that. Before the
+        first row of a record an input is what it is there. Rates may use what is returned, readings may not."""
+        index = next((i for i, one in enumerate(self._inputs) if ca.is_equal(one.sx, logged)), None)
+        if index is None:
+            raise PlantError(f"the delay of `{logged}` is not that of an input; give what plant.input(...) "
+                             "returned")
+        name = self._inputs[index].name
+        if unit != "s":
+            raise PlantError(f"the delay of `{name}` is in `{unit}`, expected `s`, as the time of a record is")
+        if any(late.index == index for late in self._late):
+            raise PlantError(f"the delay of `{name}` is declared twice; use what the first call returned")
+        self.parameter(f"{name}.delay", unit, value, sigma, doc=doc or f"dead time of {name}")
+        late = _Late(ca.SX.sym(f"{name}_late"), index, len(self._parameters) - 1)
+        self._late.append(late)
+        return late.sx
 
     def regressor(self, name: str) -> None:
         """A logged quantity, such as a temperature, that rates and outputs may depend on."""
@@ -234,7 +264,12 @@ class Plant:
             if state.name not in self._rates:
                 raise PlantError(f"state `{state.name}` has no rate; add plant.rate(\"{state.name}\", …)")
         known = [*self._states, *self._parameters, *self._inputs]
-        symbols = [one.sx for one in known]
+        late = [one.sx for one in self._late]
+        symbols = [one.sx for one in known] + late
+        for output in self._outputs:
+            if any(ca.depends_on(output.facts["expression"], one) for one in late):
+                raise PlantError(f"output `{output.name}` uses a delayed input, which rates alone may: let a state "
+                                 "follow the input, and read that")
         every = [(f"the rate of `{n}`", e) for n, e in self._rates.items()]
         every += [(f"output `{o.name}`", o.facts["expression"]) for o in self._outputs]
         every += [(f"effect `{e.id}`", e.term) for e in self._effects if e.term is not None]
@@ -262,7 +297,8 @@ class Plant:
                                  "states: no record says anything of it; add a sensor or leave it out")
 
     def _check_units(self, known: list[_Symbol]) -> None:
-        symbols, names = [one.sx for one in known], [one.unit for one in known]
+        symbols = [one.sx for one in known] + [late.sx for late in self._late]
+        names = [one.unit for one in known] + [self._inputs[late.index].unit for late in self._late]
         wanted = [(f"the rate of `{s.name}`", self._rates[s.name], s.unit and units.per_s(s.unit))
                   for s in self._states]
         wanted += [(f"output `{o.name}`", o.facts["expression"], o.unit) for o in self._outputs]
@@ -288,7 +324,9 @@ class Plant:
 
     def _propose(self) -> None:
         symbols = [(s.name, units.plain(s.unit), s.sx, s.facts["typical"], True) for s in self._states]
-        symbols += [(i.name, units.plain(i.unit), i.sx, i.facts["typical"], False) for i in self._inputs]
+        acting = self._acting()
+        symbols += [(i.name, units.plain(i.unit), acting[n], i.facts["typical"], False)
+                    for n, i in enumerate(self._inputs)]
         for index, state in enumerate(self._states):
             if self._kinematic(state):
                 continue
@@ -307,6 +345,13 @@ class Plant:
                 self._add(f"{output.name}.{ident}", f"sensor: {words}",
                           units.over(output.unit or "1", unit), "output", index, expression)
 
+    def _acting(self) -> list[ca.SX]:
+        """The inputs as they act: those with a dead time late."""
+        acting = [one.sx for one in self._inputs]
+        for late in self._late:
+            acting[late.index] = late.sx
+        return acting
+
     def _add(self, ident, name, unit, place, index, term, knee=None) -> None:
         if any(other.id == ident for other in self._effects):
             return
@@ -319,6 +364,13 @@ class Plant:
         """Makes terms of the catalogue nominal ones."""
         of_time = {effect.id for effect in self._of_time(self._constants())}
         for ident, value, sigma, knee in self._extensions:
+            logged = next((i for i in self._inputs if ident == f"{i.name}.delay"), None)
+            if logged:
+                if knee is not None:
+                    raise PlantError(f"effect `{ident}` has no knee; leave `knee=` out")
+                late = self.delay(logged.sx, "s", value, sigma)
+                self._rates = {name: ca.substitute(rate, logged.sx, late) for name, rate in self._rates.items()}
+                continue
             known = {effect.id: effect for effect in [*self._constants(), *self._effects]}
             if ident in of_time:
                 raise PlantError(f"effect `{ident}` is a function of time and no term of the equations, "
@@ -364,9 +416,11 @@ class Plant:
         rates = ca.vertcat(*self._rates.values())
         if self._grammar is False:
             return []
+        late = {one.index: one.sx for one in self._late}
         return [_Effect(f"{i.name}.error", f"input {i.name}", "1", i.unit or "1", "term", "input", index,
                         ca.SX(1))
-                for index, i in enumerate(self._inputs) if ca.depends_on(rates, i.sx)]
+                for index, i in enumerate(self._inputs)
+                if ca.depends_on(rates, i.sx) or index in late and ca.depends_on(rates, late[index])]
 
     def _judged(self) -> list[_Symbol]:
         """Sizes of all terms: biases of the channels first, then what the catalogue keeps."""
@@ -378,10 +432,11 @@ class Plant:
         if bent:
             knees, places = ca.vertcat(*[one.sx for one in bent]), ca.vertcat(*[one.value for one in bent])
             rates, output = (ca.substitute(e, knees, places) for e in (rates, output))
-        variables = [*self._states, *self._inputs]
-        scales = [one.facts["typical"] or 1.0 for one in variables]
+        late = [self._inputs[one.index] for one in self._late]
+        scales = [one.facts["typical"] or 1.0 for one in [*self._states, *self._inputs, *late]]
+        variables = [one.sx for one in [*self._states, *self._inputs, *self._late]]
         found = dependence.judge(
-            rates, output, ca.vertcat(*[one.sx for one in variables]), scales,
+            rates, output, ca.vertcat(*variables), scales,
             ca.vertcat(*[p.sx for p in self._parameters]),
             [p.facts["value"] for p in self._parameters], sizes)
         kept, self._channels = [], {}
@@ -422,9 +477,11 @@ class Plant:
         found = []
         for bias in biases:
             if bias.place == "input":
+                is_late = any(late.index == bias.index for late in self._late)
                 found += [_Effect(f"{self._inputs[bias.index].name}.{kind}", f"{bias.name} {words}", formula,
                                   unit, kind, "input", bias.index)
-                          for kind, words, formula, unit in grammar.of_input(bias.unit)]
+                          for kind, words, formula, unit in grammar.of_input(bias.unit)
+                          if not (is_late and kind == "delay")]
                 continue
             channel = bias.id.removesuffix(".bias")
             words = bias.name.removesuffix("a constant").rstrip(": ")
@@ -460,8 +517,10 @@ class Plant:
         rates = [self._rates[s.name] for s in self._states]
         output = [o.facts["expression"] for o in self._outputs]
         errors = {e.index: sizes[position] for position, e in enumerate(effects) if e.place == "input"}
-        logged = ca.vertcat(*[i.sx for i in self._inputs])
-        acting = ca.vertcat(*[i.sx + errors.get(index, 0) for index, i in enumerate(self._inputs)])
+        places = [(i.sx, index) for index, i in enumerate(self._inputs)]
+        places += [(late.sx, late.index) for late in self._late]
+        logged = ca.vertcat(*[sx for sx, _ in places])
+        acting = ca.vertcat(*[sx + errors.get(index, 0) for sx, index in places])
         if errors:
             rates = [ca.substitute(rate, logged, acting) for rate in rates]
         for position, effect in enumerate(effects):
@@ -482,7 +541,12 @@ class Plant:
         bent = [e for e in terms if e.knee]
         elements += [_element(f"{e.id}.knee", self._unit_of(e.knee), f"knee of {e.name}", f"knee_{i}")
                      for i, e in enumerate(bent)]
-        parameters = Group("parameters", "Parameters, sizes of effects, then knees of these.", elements)
+        late = [self._inputs[one.index] for one in self._late]
+        elements += [_element(f"{i.name}.late", i.unit, f"what {i.name} was its dead time before, less what it is",
+                              f"late_{n}") for n, i in enumerate(late)]
+        elements += [_element(e.id, e.unit, e.name, f"delay_{n}") for n, e in enumerate(self._delays())]
+        parameters = Group("parameters", "Parameters, sizes of effects, then knees of these, what delayed inputs were "
+                           "less what they are, and delays that are effects.", elements)
         states = Group("states", "States.", [_element(s.name, s.unit, s.doc, f"state_{i}")
                                              for i, s in enumerate(self._states)])
         inputs = Group("inputs", "Inputs.", [_element(i.name, i.unit, i.doc, f"input_{n}")
@@ -494,8 +558,11 @@ class Plant:
         for i, state in enumerate(driven):
             rates[self._states.index(state)] += noise.sx[i]
         old = ca.vertcat(*[s.sx for s in [*self._states, *self._parameters, *self._inputs]],
-                         *[e.knee.sx for e in bent])
-        new = ca.vertcat(states.sx, parameters.sx[:nominal], inputs.sx, parameters.sx[nominal + len(terms):])
+                         *[e.knee.sx for e in bent], *[one.sx for one in self._late])
+        knees = nominal + len(terms)
+        first = knees + len(bent)
+        acting = [inputs.sx[one.index] + parameters.sx[first + n] for n, one in enumerate(self._late)]
+        new = ca.vertcat(states.sx, parameters.sx[:nominal], inputs.sx, parameters.sx[knees:first], *acting)
         rates, output = (ca.substitute(e, old, new) for e in (rates, output))
         program = Equations(
             self.name, self.doc, states, rates, output,
@@ -506,10 +573,17 @@ class Plant:
         program.tables = self._tables(terms, driven)
         return program
 
+    def _delays(self) -> list[_Effect]:
+        return [effect for effect in self._effects if effect.kind == "delay"]
+
     def _tables(self, terms: list[_Effect], driven: list[_Symbol]) -> list[Table]:
         nominal = len(self._parameters)
+        bent = [e for e in terms if e.knee]
+        first = nominal + len(terms) + len(bent)
 
         def size_of(effect: _Effect) -> int:
+            if effect.kind == "delay":
+                return first + len(self._late) + self._delays().index(effect)
             if effect.term is not None:
                 return nominal + terms.index(effect)
             if effect.place == "parameter":
@@ -545,7 +619,12 @@ class Plant:
             _table("plant_knees", "PlantKnee", "Knees of effects.", [
                 {"size": size_of(e), "constant": nominal + len(terms) + position, "unit": self._unit_of(e.knee) or "1",
                  "value": e.knee.value, "sigma": e.knee.sigma}
-                for position, e in enumerate(e for e in terms if e.knee)]),
+                for position, e in enumerate(bent)]),
+            _table("plant_delays", "PlantDelay", "Dead times of inputs, and the constants that make inputs late.", [
+                {"input": one.index, "constant": first + position, "time": one.parameter}
+                for position, one in enumerate(self._late)] + [
+                {"input": e.index, "constant": nominal + self._channels[("input", e.index)], "time": size_of(e)}
+                for e in self._delays()]),
             _table("plant_effects", "PlantEffect", "Catalogue of effects.", [
                 {"id": e.id, "name": e.name, "formula": e.formula, "unit": e.unit, "kind": e.kind,
                  "place": e.place, "index": e.index, "size": size_of(e), "regressor": e.regressor,

@@ -113,3 +113,49 @@ def test_units_are_parsed():
     assert units.parse("V") == units.parse("W/A")
     with pytest.raises(ValueError, match="has `\\(m\\)`"):
         units.parse("(m)")
+
+
+def test_a_dead_time_is_a_parameter_and_its_input_acts_late():
+    plant = Plant("Late", "A lag with a dead time.")
+    x = plant.state("x", "V", typical=1.0)
+    u = plant.input("u", "V", typical=1.0)
+    late = plant.delay(u, "s", 0.25, sigma=0.1)
+    plant.rate("x", plant.parameter("b", "s^-1", 0.5) * (late - x))
+    plant.output("y", "V", x, sigma=0.1)
+    program = json.loads(plant.to_json())
+    tables = {table["name"]: table for table in program["tables"]}
+    assert tables["plant_parameters"]["rows"][0] == ["u.delay", "s", 0.25, 0.1, False]
+    elements = next(group for group in program["groups"] if group["name"] == "parameters")["elements"]
+    (delay,) = tables["plant_delays"]["rows"]
+    assert [elements[int(place)]["id"] for place in delay[1:]] == ["u.late", "u.delay"]
+    # What is estimated is no effect beside it.
+    assert "u.delay" not in [row[0] for row in tables["plant_effects"]["rows"]]
+    with pytest.raises(PlantError, match="is declared twice"):
+        plant.delay(u, "s", 0.1)
+    with pytest.raises(PlantError, match="is not that of an input"):
+        plant.delay(x, "s", 0.1)
+    with pytest.raises(PlantError, match="expected `s`"):
+        plant.delay(plant.input("w", "V"), "ms", 1.0)
+
+
+def test_a_reading_uses_no_delayed_input():
+    plant = Plant("Late", "A lag with a dead time.")
+    x = plant.state("x", "V", typical=1.0)
+    late = plant.delay(plant.input("u", "V", typical=1.0))
+    plant.rate("x", plant.parameter("b", "s^-1", 0.5) * (late - x))
+    plant.output("y", "V", x + late, sigma=0.1)
+    with pytest.raises(PlantError, match="uses a delayed input"):
+        plant.to_json()
+
+
+def test_a_delay_that_was_found_extends_the_plant():
+    plant = Plant("Late", "A lag.")
+    x = plant.state("x", "V", typical=1.0)
+    plant.rate("x", plant.parameter("b", "s^-1", 0.5) * (plant.input("u", "V", typical=1.0) - x))
+    plant.output("y", "V", x, sigma=0.1)
+    plant.extend("u.delay", 0.3)
+    tables = {table["name"]: table for table in json.loads(plant.to_json())["tables"]}
+    values = {row[0]: row[2] for row in tables["plant_parameters"]["rows"]}
+    assert values == {"b": 0.5, "u.delay": 0.3}
+    effects = [row[0] for row in tables["plant_effects"]["rows"]]
+    assert "u.delay" not in effects and "u.play" in effects

@@ -1,6 +1,7 @@
 //! Diagnosis of any plant: five simulated plants with hidden effects.
 
 mod coloured;
+mod dead_times;
 mod effort;
 mod gauges;
 pub(crate) mod hidden;
@@ -51,6 +52,7 @@ pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
     figures.extend(coloured::figures(context, &plants)?);
     figures.extend(offsets::figures(context, &plants)?);
     figures.extend(knees::figures(context, &plants)?);
+    figures.extend(dead_times::figures(context, &plants)?);
     figures.push(effort::lines()?);
     figures.push(effort::duration()?.timed(context.is_small()));
     figures.push(effort::interpreted(&plants[Kind::Duffing as usize])?);

@@ -50,6 +50,9 @@ pub(crate) struct GramProducts {
     /// Columns of the signatures.
     signatures: Vec<usize>,
     values: Vec<f64>,
+    /// What is taken out with a value, in its column: an effect that bends is its size times a column, and its knee
+    /// alone adds nothing.
+    removed: Vec<f64>,
     prior_sigma: Vec<f64>,
 }
 
@@ -84,6 +87,7 @@ impl GramProducts {
         let (nuisance, signatures) = ((1..=own).collect(), (own + 1..gram.nrows()).collect());
         let mut products = Self::of(fitted, gram, nuisance, signatures);
         products.values.resize(own, 0.0);
+        products.removed.resize(own, 0.0);
         products.prior_sigma.resize(own, f64::INFINITY);
         Ok(products)
     }
@@ -94,11 +98,21 @@ impl GramProducts {
         nuisance: Vec<usize>,
         signatures: Vec<usize>,
     ) -> Self {
+        let values = fitted.values().to_vec();
+        let mut removed = values.clone();
+        let extension = &fitted.extension().parameters;
+        let own = removed[fitted.plant().nominal_parameters..].iter_mut();
+        for (value, (parameter, _)) in own.zip(extension) {
+            if fitted.plant().is_knee(*parameter) {
+                *value = 0.0;
+            }
+        }
         Self {
             gram,
             nuisance,
             signatures,
-            values: fitted.values().to_vec(),
+            removed,
+            values,
             prior_sigma: fitted.prior_sigma(),
         }
     }
@@ -123,7 +137,7 @@ impl GramProducts {
         let mut gradient = DVector::from_fn(all.len(), |i, _| {
             let dropped = without
                 .iter()
-                .map(|index| gram[(self.nuisance[*index], all[i])] * self.values[*index]);
+                .map(|index| gram[(self.nuisance[*index], all[i])] * self.removed[*index]);
             dropped.sum::<f64>() - gram[(0, all[i])]
         });
         for (place, index) in kept.iter().enumerate() {
@@ -149,11 +163,12 @@ impl GramProducts {
             nuisance,
             signatures,
             values,
+            removed,
             prior_sigma,
         } = self;
         let dropped: Vec<(usize, f64)> = without
             .iter()
-            .map(|index| (nuisance[*index], values[*index]))
+            .map(|index| (nuisance[*index], removed[*index]))
             .collect();
         // Score of a column of the Gram matrix, in the model without what was dropped. Columns
         // are derivatives of the innovations, hence the sign.

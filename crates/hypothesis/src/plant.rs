@@ -47,6 +47,13 @@ pub struct Plant {
 }
 
 impl Plant {
+    /// Whether a parameter is where an effect bends, and no size.
+    #[must_use]
+    pub fn is_knee(&self, parameter: usize) -> bool {
+        let mut all = self.effects.iter().flat_map(|effect| effect.parameters);
+        all.any(|own| matches!(own.role, Role::Knee(index) if index == parameter))
+    }
+
     /// The effect with this id.
     #[must_use]
     pub fn effect(&self, id: &str) -> Option<&'static Effect> {

@@ -13,7 +13,6 @@ use gyrocal_scalar::effect::{
 };
 
 use crate::description::{Description, EffectEntry, Kind, Place};
-use crate::input_errors::InputError;
 
 /// A function of time times a parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,8 +30,8 @@ pub(crate) struct Modulated {
 pub(crate) enum Modulation {
     /// A weight of the tables.
     Weight(usize),
-    /// An error of an input.
-    Error(InputError, usize),
+    /// Play of an input.
+    Play(usize),
 }
 
 /// Tables, and what the sizes of functions of time multiply.
@@ -266,16 +265,16 @@ impl<'d> Builder<'d> {
                 let own = self.modulated(entry, Modulation::Weight(weight));
                 (EffectKind::Regressor, vec![size(own, Some(weight))])
             }
-            Kind::Delay | Kind::Play => {
-                let error = match entry.kind {
-                    Kind::Play => InputError::Play,
-                    _ => InputError::Delay,
-                };
+            Kind::Delay => {
+                let own = Role::Parameter(self.states + entry.size);
+                (EffectKind::Constant, vec![size(own, None)])
+            }
+            Kind::Play => {
                 let input = match place {
                     Place::Input(input) => input,
                     _ => 0,
                 };
-                let own = self.modulated(entry, Modulation::Error(error, input));
+                let own = self.modulated(entry, Modulation::Play(input));
                 (EffectKind::Constant, vec![size(own, None)])
             }
             Kind::Step => {

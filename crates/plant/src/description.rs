@@ -8,7 +8,7 @@ use gyrocal_codegen::Program;
 use gyrocal_statistics::math::{cos, sin};
 
 use crate::error::PlantError;
-use rows::{channel, effect, knee, rows};
+use rows::{channel, delay, effect, knee, rows};
 
 /// A state.
 #[derive(Clone, Debug, PartialEq)]
@@ -129,6 +129,12 @@ pub enum Kind {
 }
 
 impl Kind {
+    /// Whether its size is a parameter of the model itself, and so one that a script can write.
+    #[must_use]
+    pub fn is_of_the_model(self) -> bool {
+        matches!(self, Self::Term | Self::Delay)
+    }
+
     /// Whether it is a function of time alone.
     #[must_use]
     pub fn is_of_time(self) -> bool {
@@ -185,6 +191,18 @@ pub struct Knee {
     pub sigma: f64,
 }
 
+/// A dead time of an input: what rates see of it is what it was that long before. Before the first row of a record an
+/// input is what it is there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Delay {
+    /// The input.
+    pub input: usize,
+    /// The parameter that is added to the input: what it was less what it is.
+    pub constant: usize,
+    /// The parameter that is the dead time, s.
+    pub time: usize,
+}
+
 /// A plant, but for its functions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Description {
@@ -212,6 +230,8 @@ pub struct Description {
     pub effects: Vec<EffectEntry>,
     /// Knees of effects of the catalogue.
     pub knees: Vec<Knee>,
+    /// Dead times: those of the model, then those that are effects.
+    pub delays: Vec<Delay>,
 }
 
 impl Description {
@@ -275,6 +295,21 @@ impl Description {
             .map_or((&program.name, &program.doc), |model| {
                 (&model.name, &model.doc)
             });
+        let effects = rows(program, "plant_effects", effect)?;
+        let delays = rows(program, "plant_delays", delay)?;
+        let has_time = |one: &EffectEntry| delays.iter().any(|delay| delay.time == one.size);
+        let late = effects
+            .iter()
+            .find(|one| one.kind == Kind::Delay && !has_time(one));
+        if let Some(late) = late {
+            return Err(PlantError::NoPlant {
+                origin: program.origin.clone(),
+                problem: format!(
+                    "the effect `{}` has no dead time, as an earlier version wrote it: run the script again",
+                    late.id
+                ),
+            });
+        }
         Ok(Self {
             name: model_name.clone(),
             doc: doc.clone(),
@@ -283,6 +318,8 @@ impl Description {
             inputs,
             outputs,
             noises,
+            effects,
+            delays,
             regressors: rows(program, "plant_regressors", |row| row.text("id"))?,
             periods: rows(program, "plant_periods", |row| {
                 Ok(Period {
@@ -291,7 +328,6 @@ impl Description {
                 })
             })?,
             channels: rows(program, "plant_channels", channel)?,
-            effects: rows(program, "plant_effects", effect)?,
             knees: rows(program, "plant_knees", knee)?,
         })
     }

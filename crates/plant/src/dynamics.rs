@@ -1,15 +1,19 @@
 //! Steps of a plant from row to row, with their exact derivatives.
 
+mod step_memory;
+
 use std::sync::Arc;
 
 use gyrocal_inference::{Layout, LinearisedRows};
 
 use crate::error::PlantError;
-use crate::functions::{Functions, OutputsAt, Point, RatesAt, Sizes, Workspace};
+use crate::functions::{Functions, OutputsAt, Point, Sizes, Workspace};
+use crate::late::LateInput;
 use crate::linearised::Linearised;
 use crate::lines::Course;
 use crate::loaded::LoadedPlant;
 use crate::record::PlantRecord;
+use step_memory::StepMemory;
 
 /// Shares of a step at which a classical Runge-Kutta rule takes the rates, and their weights.
 const STAGES: [(f64, f64); 4] = [
@@ -33,13 +37,19 @@ pub(crate) struct Dynamics<'a> {
     inputs: Vec<f64>,
     interpolate: Vec<bool>,
     parameters: Vec<f64>,
+    /// Inputs that act late, or whose dead time derivatives are taken by.
+    late: Vec<LateInput>,
 }
 
 impl<'a> Dynamics<'a> {
     /// With derivatives by all parameters.
     pub(crate) fn new(plant: &'a LoadedPlant, record: &'a PlantRecord, substeps: usize) -> Self {
         let all = (0..plant.functions.sizes().parameters).collect();
-        Self::of(plant, record, substeps, (Arc::clone(&plant.functions), all))
+        let late = plant.description.delays.iter().copied().map(LateInput::new);
+        Self {
+            late: late.collect(),
+            ..Self::of(plant, record, substeps, (Arc::clone(&plant.functions), all))
+        }
     }
 
     /// Of courses that change no parameters but the wanted ones and those that `course` has; with
@@ -55,12 +65,23 @@ impl<'a> Dynamics<'a> {
             is_wanted[*index] = true;
         }
         let parameters = is_wanted.iter().enumerate();
-        let is_zero: Vec<bool> = parameters
+        let mut is_zero: Vec<bool> = parameters
             .map(|(index, wanted)| !wanted && course.is_zero(index))
             .collect();
+        let mut late = Vec::new();
+        for delay in &plant.description.delays {
+            if !is_zero[delay.time] {
+                is_zero[delay.constant] = false;
+                is_wanted[delay.constant] |= is_wanted[delay.time];
+                late.push(LateInput::new(*delay));
+            }
+        }
         let functions = plant.functions.narrowed(&is_zero, &is_wanted);
         let functions = functions.unwrap_or_else(|| Arc::clone(&plant.functions));
-        Self::of(plant, record, substeps, (functions, wanted.into()))
+        Self {
+            late,
+            ..Self::of(plant, record, substeps, (functions, wanted.into()))
+        }
     }
 
     fn of(
@@ -82,6 +103,24 @@ impl<'a> Dynamics<'a> {
             inputs: vec![0.0; sizes.inputs],
             interpolate: inputs.map(|input| input.interpolate).collect(),
             parameters: vec![0.0; sizes.parameters],
+            late: Vec::new(),
+        }
+    }
+
+    /// Sets the dead times of a course.
+    fn set_late(&mut self, course: &Course) {
+        for late in &mut self.late {
+            let time_s = course.constant[late.delay.time];
+            let interpolate = self.interpolate[late.delay.input];
+            late.set(time_s, self.record, self.sizes.inputs, interpolate);
+        }
+    }
+
+    /// Sets the parameters in the step after a row.
+    fn set_parameters(&mut self, row: usize, course: &Course) {
+        course.at(row, &mut self.parameters);
+        for late in &mut self.late {
+            late.beside = self.parameters[late.delay.constant];
         }
     }
 
@@ -94,6 +133,10 @@ impl<'a> Dynamics<'a> {
                 Some(next) if self.interpolate[index] => here + share * (next - here),
                 _ => here,
             };
+        }
+        for late in &mut self.late {
+            let logged = self.inputs[late.delay.input];
+            self.parameters[late.delay.constant] = late.beside + late.less(row, share, logged);
         }
     }
 
@@ -108,7 +151,8 @@ impl<'a> Dynamics<'a> {
             course.add_jumps(row, &mut here);
             return here;
         }
-        course.at(row, &mut self.parameters);
+        self.set_late(course);
+        self.set_parameters(row, course);
         let (n, h) = (self.sizes.states, self.interval_s(row));
         let mut here = states.to_vec();
         let (mut stage, mut rates) = (vec![0.0; n], vec![0.0; n]);
@@ -145,7 +189,7 @@ impl<'a> Dynamics<'a> {
 
     /// Outputs at a row.
     pub(crate) fn outputs(&mut self, row: usize, course: &Course, states: &[f64]) -> Vec<f64> {
-        course.at(row, &mut self.parameters);
+        self.set_parameters(row, course);
         self.set_inputs(row, 0.0);
         let mut outputs = vec![0.0; self.sizes.outputs];
         let at = Point {
@@ -216,10 +260,11 @@ impl<'a> Dynamics<'a> {
         let variances = declared.outputs.iter().map(|one| one.sigma.powi(2));
         let variances: Vec<f64> = variances.collect();
         let mut out = OutputsAt::new(self.sizes);
+        self.set_late(course);
         let mut step = StepMemory::new(self.sizes, p);
         for row in 0..rows {
             let here = &points[row * n..(row + 1) * n];
-            course.at(row, &mut self.parameters);
+            self.set_parameters(row, course);
             self.set_inputs(row, 0.0);
             let at = Point {
                 states: here,
@@ -315,6 +360,9 @@ impl<'a> Dynamics<'a> {
                 };
                 self.functions
                     .rates_with(at, &mut self.workspace, &mut step.rates);
+                for late in &self.late {
+                    step.rates.set_by_time(late, self.sizes.parameters);
+                }
                 step.set_slope(self.sizes, &self.wanted);
                 for (sum, rate) in sum.iter_mut().zip(&step.rates.values) {
                     *sum += weight * rate;
@@ -328,58 +376,6 @@ impl<'a> Dynamics<'a> {
             }
             for (by, sum) in step.by_all.iter_mut().zip(&step.sum) {
                 *by += h * sum;
-            }
-        }
-    }
-}
-
-/// Memory of a step with derivatives by states, parameters and noises.
-struct StepMemory {
-    states: Vec<f64>,
-    stage: Vec<f64>,
-    rates: RatesAt,
-    by_all: Vec<f64>,
-    moved: Vec<f64>,
-    slope: Vec<f64>,
-    sum: Vec<f64>,
-}
-
-impl StepMemory {
-    fn new(sizes: Sizes, wanted: usize) -> Self {
-        let n = sizes.states;
-        let all = vec![0.0; n * (n + wanted + sizes.noises)];
-        Self {
-            states: vec![0.0; n],
-            stage: vec![0.0; n],
-            rates: RatesAt::new(sizes),
-            by_all: all.clone(),
-            moved: all.clone(),
-            slope: all.clone(),
-            sum: all,
-        }
-    }
-
-    /// Derivatives of the rates along the moved derivatives of the states.
-    fn set_slope(&mut self, sizes: Sizes, wanted: &[usize]) {
-        let (n, w) = (sizes.states, sizes.noises);
-        let p = wanted.len();
-        let columns = n + p + w;
-        for i in 0..n {
-            let slope = &mut self.slope[i * columns..(i + 1) * columns];
-            slope[..n].fill(0.0);
-            let by = &self.rates.by_parameters[i * sizes.parameters..(i + 1) * sizes.parameters];
-            for (slope, index) in slope[n..n + p].iter_mut().zip(wanted) {
-                *slope = by[*index];
-            }
-            slope[n + p..].copy_from_slice(&self.rates.by_noises[i * w..(i + 1) * w]);
-            for j in 0..n {
-                let by = self.rates.by_states[i * n + j];
-                if by != 0.0 {
-                    let moved = &self.moved[j * columns..(j + 1) * columns];
-                    for (slope, moved) in slope.iter_mut().zip(moved) {
-                        *slope += by * moved;
-                    }
-                }
             }
         }
     }

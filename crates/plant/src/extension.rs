@@ -40,19 +40,24 @@ impl Extension {
             let entry = effects.find(|entry| entry.id == finding.effect);
             let size = finding.parameters.first();
             match (entry.map(|entry| entry.kind), size) {
-                (Some(Kind::Term), Some(size)) => extension.terms.push(ExtensionTerm {
-                    effect: finding.effect.clone(),
-                    value: size.estimate,
-                    sigma: size.sigma.unwrap_or(0.0),
-                    knee: finding
-                        .parameters
-                        .iter()
-                        .find(|own| own.name == KNEE)
-                        .map(|own| own.estimate),
-                }),
+                (Some(kind), Some(size)) if kind.is_of_the_model() => {
+                    extension.terms.push(ExtensionTerm {
+                        effect: finding.effect.clone(),
+                        value: size.estimate,
+                        sigma: size.sigma.unwrap_or(0.0),
+                        knee: finding
+                            .parameters
+                            .iter()
+                            .find(|own| own.name == KNEE)
+                            .map(|own| own.estimate),
+                    })
+                }
                 (kind, _) => {
                     let why = match kind {
                         None => "is no effect of this plant's catalogue",
+                        Some(Kind::Play) => {
+                            "is play of an input, which is no term of the equations"
+                        }
                         Some(_) => "is a function of time, which is no term of the equations",
                     };
                     extension.left_out.push((finding.effect.clone(), why));

@@ -6,6 +6,7 @@ use gyrocal_hypothesis::{Column, ModelExtension, Rows};
 
 use crate::catalogue::Modulation;
 use crate::loaded::LoadedPlant;
+use crate::play;
 use crate::record::PlantRecord;
 
 /// The parameters that some columns change, in rising order.
@@ -74,11 +75,11 @@ pub(crate) fn of_parameters(
                 let steps = rows.step_weights(tables, weight, &shapes);
                 profile(modulated.of, steps)
             }
-            (Modulation::Error(error, input), _) => {
+            (Modulation::Play(input), _) => {
                 let inputs = &plant.description.inputs;
                 let interpolate = inputs[input].interpolate;
                 let steps = in_each(record, |part| {
-                    error.steps(part, inputs.len(), input, interpolate)
+                    play::steps(part, (inputs.len(), input), interpolate)
                 });
                 profile(modulated.of, steps)
             }

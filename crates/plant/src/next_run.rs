@@ -5,7 +5,7 @@
 //! added to that of the records (Lindley, Ann. Math. Stat. 27, 986, 1956; Box and Hill, Technometrics 9, 57,
 //! 1967).
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use crate::linearised::reduce;
 use gyrocal_answer::{AlternativeKind, Coefficients, Finding, NextRun, NextSigma, ToldApart};
@@ -16,6 +16,7 @@ use gyrocal_statistics::normal_probability;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 use crate::diagnosed::Diagnosed;
+use crate::dynamics::Dynamics;
 use crate::error::PlantError;
 use crate::fitted::FittedPlant;
 use crate::later_starts::eliminated;
@@ -23,16 +24,20 @@ use crate::lines::{Course, initial, parameters_of};
 use crate::prediction::least_prior;
 use crate::problem::Problem;
 use crate::record::{NamedRecord, PlantRecord};
-use crate::solve::Solver;
+use crate::solve::{Solution, Solver};
 use gyrocal_words::plant::mean_ratio;
+
+/// Knees of rivals over where the search takes them to be: a rival of no size has no derivative by its knee, and is as
+/// near as the nearest of these.
+const KNEES: [f64; 7] = [1.0, 0.25, 0.5, 0.75, 1.25, 1.5, 2.0];
 
 /// Information on parameters of the model, by their index in the table of the plant, from the records and from a run.
 struct Informed<'a> {
     fitted: &'a FittedPlant,
     /// Parameters of the model: nominal ones, then those of effects.
     unknowns: Vec<usize>,
-    now: DMatrix<f64>,
-    after: DMatrix<f64>,
+    /// Now, and after the run; then the same with the knees of rivals elsewhere.
+    all: Vec<[DMatrix<f64>; 2]>,
 }
 
 impl Diagnosed {
@@ -106,9 +111,10 @@ impl<'a> Informed<'a> {
         let own = fitted.extension().parameters.iter();
         unknowns.extend(own.map(|(parameter, _)| *parameter));
         let rivals = findings.iter().flat_map(rivals);
-        for row in rivals.filter_map(|rival| lasting(fitted, rival)) {
-            unknowns.extend(row.model_parameters());
-        }
+        let rivals: Vec<&Effect> = rivals.filter_map(|rival| lasting(fitted, rival)).collect();
+        unknowns.extend(rivals.iter().flat_map(|row| row.model_parameters()));
+        let mut own = rivals.iter().flat_map(|row| row.model_parameters());
+        let has_knee = own.any(|one| fitted.problem.sigma_of_knee(one).is_some());
         let mut seen = Vec::with_capacity(unknowns.len());
         unknowns.retain(|parameter| {
             let new = !seen.contains(parameter);
@@ -128,22 +134,26 @@ impl<'a> Informed<'a> {
         let columns: Vec<usize> = core::iter::once(0)
             .chain(places.map(|place| place + 1))
             .collect();
-        let gram = fitted.signatures_gram(&[])?;
-        let gram = gram.select_rows(&columns).select_columns(&columns);
-        let mut now = without_last(gram, &[&sigmas, own.sigmas()].concat())?;
-        for (place, parameter) in unknowns.iter().enumerate() {
-            let problem = &fitted.problem;
-            let nominal = problem.prior_sigma.get(*parameter).copied();
-            if let Some(sigma) = nominal.or_else(|| problem.sigma_of_knee(*parameter)) {
-                now[(place, place)] += sigma.powi(-2);
+        let knees = if has_knee { &KNEES[..] } else { &KNEES[..1] };
+        let run = with_no_outputs(run);
+        let all = knees.iter().map(|share| {
+            let gram = fitted.signatures_gram_at(*share)?;
+            let gram = gram.select_rows(&columns).select_columns(&columns);
+            let mut now = without_last(gram, &[&sigmas, own.sigmas()].concat())?;
+            for (place, parameter) in unknowns.iter().enumerate() {
+                let problem = &fitted.problem;
+                let nominal = problem.prior_sigma.get(*parameter).copied();
+                if let Some(sigma) = nominal.or_else(|| problem.sigma_of_knee(*parameter)) {
+                    now[(place, place)] += sigma.powi(-2);
+                }
             }
-        }
-        let run = without_last(fitted.gram_of(run, &unknowns)?, &sigmas)?;
+            let run = without_last(fitted.gram_of(&run, &unknowns, *share)?, &sigmas)?;
+            Ok([now.clone(), now + run])
+        });
         Ok(Self {
+            all: all.collect::<Result<_, PlantError>>()?,
             fitted,
             unknowns,
-            after: &now + run,
-            now,
         })
     }
 
@@ -166,7 +176,10 @@ impl<'a> Informed<'a> {
             let cholesky = Cholesky::new(own).ok_or(PlantError::Singular)?;
             Ok::<_, PlantError>(cholesky.inverse().diagonal())
         };
-        let (now, after) = (variances(&self.now)?, variances(&self.after)?);
+        let Some([now, after]) = self.all.first() else {
+            return Ok(Vec::new());
+        };
+        let (now, after) = (variances(now)?, variances(after)?);
         let ratio = |place: usize| (after[place] / now[place]).sqrt();
         let forecast = |name: String, unit: &str, sigma: f64, place: usize| NextSigma {
             name,
@@ -205,14 +218,14 @@ impl<'a> Informed<'a> {
             };
             for rival in rivals(found) {
                 let row = lasting(self.fitted, rival).and_then(|row| self.places(row));
-                let distances = row.and_then(|rival| {
-                    let [now, after] = [&self.now, &self.after];
-                    Some([
-                        self.distance(now, &named, &rival)?,
-                        self.distance(after, &named, &rival)?,
-                    ])
+                let distances = row.map(|rival| {
+                    [0, 1].map(|time: usize| {
+                        let all = self.all.iter();
+                        let all = all.filter_map(|own| self.distance(&own[time], &named, &rival));
+                        all.min_by(f64::total_cmp)
+                    })
                 });
-                let Some([now, after]) = distances else {
+                let Some([Some(now), Some(after)]) = distances else {
                     continue;
                 };
                 // The deviance between both is normal about the squared distance, with twice it as deviation.
@@ -238,6 +251,15 @@ impl<'a> Informed<'a> {
         let mut beside = self.fitted_places();
         beside.retain(|place| !named.contains(place));
         beside.extend(rival.iter().filter(|place| !named.contains(place)));
+        // What the named effect adds is its size times what that multiplies, with the knee where it is.
+        let problem = &self.fitted.problem;
+        let is_knee = |place: usize| problem.sigma_of_knee(self.unknowns[place]).is_some();
+        let named: Vec<usize> = named
+            .iter()
+            .copied()
+            .filter(|place| !is_knee(*place))
+            .collect();
+        let named = &named[..];
         let inner = all.select_rows(&beside).select_columns(&beside);
         let cross = all.select_rows(&beside).select_columns(named);
         let own = all.select_rows(named).select_columns(named);
@@ -246,6 +268,12 @@ impl<'a> Informed<'a> {
         let sizes = DVector::from_iterator(named.len(), named.iter().map(value));
         Some((&left * &sizes).dot(&sizes).max(0.0).sqrt())
     }
+}
+
+/// A run whose outputs say nothing.
+fn with_no_outputs(mut run: PlantRecord) -> Arc<PlantRecord> {
+    run.outputs.fill(0.0);
+    Arc::new(run)
 }
 
 /// Information of a Gram matrix on all but its last columns, which have these standard deviations before it.
@@ -267,21 +295,54 @@ impl FittedPlant {
         place.map_or(0.0, |place| self.values()[nominal + place])
     }
 
-    /// Gram matrix of a run that the model simulates: nothing, columns of parameters of the model, initial states.
+    /// Moves the knees of effects that are not in the model to so much of where the search takes them to be.
+    fn move_knees(&self, course: &mut Course, share: f64) {
+        let description = &self.problem.plant.description;
+        let states = description.states.len();
+        for knee in &description.knees {
+            let mut own = self.extension().parameters.iter();
+            if !own.any(|(parameter, _)| *parameter == states + knee.constant) {
+                course.constant[knee.constant] = share * knee.value;
+            }
+        }
+    }
+
+    /// [`FittedModel::signatures_gram`] of nothing further, with the knees of effects that are not in the model moved.
+    fn signatures_gram_at(&self, share: f64) -> Result<DMatrix<f64>, PlantError> {
+        if share == 1.0 {
+            return self.signatures_gram(&[]);
+        }
+        let mut moved = self.clone();
+        let problem = &*self.problem;
+        let solver = Solver::new(problem, self.extension(), self.noise.clone());
+        let mut course = solver.course(&self.solution.at.values);
+        self.move_knees(&mut course, share);
+        let mut dynamics = Dynamics::new(&problem.plant, &problem.record, problem.substeps);
+        let whole = dynamics.linearise(&course, self.points())?;
+        moved.solution = Arc::new(Solution {
+            lin: whole,
+            whole: OnceLock::new(),
+            ..(*self.solution).clone()
+        });
+        moved.signatures_gram(&[])
+    }
+
+    /// Gram matrix of a run that the model simulates: nothing, columns of parameters of the model, initial states. The
+    /// knees of effects that are not in it are moved.
     fn gram_of(
         &self,
-        mut run: PlantRecord,
+        run: &Arc<PlantRecord>,
         unknowns: &[usize],
+        share: f64,
     ) -> Result<DMatrix<f64>, PlantError> {
         let plant = &self.problem.plant;
         let (states, outputs) = (plant.description.states.len(), &plant.description.outputs);
-        run.outputs.fill(0.0);
-        let run = Arc::new(run);
-        let problem = Problem::new(plant, Arc::clone(&run), self.problem.substeps);
+        let problem = Problem::new(plant, Arc::clone(run), self.problem.substeps);
         let mut base = Course::declared(plant);
+        self.move_knees(&mut base, share);
         let mut lines = Vec::with_capacity(unknowns.len() + states);
         for parameter in unknowns {
-            let line = self.in_later(*parameter, &run);
+            let line = self.in_later(*parameter, run);
             // What another record does not have is a change of nothing.
             let line = line.unwrap_or_else(|| Column::Output {
                 output: 0,

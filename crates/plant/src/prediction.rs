@@ -18,6 +18,7 @@ use crate::fitted::FittedPlant;
 use crate::linearised::reduce;
 use crate::lines::{Course, initial, of_parameters, parameters_of, profile};
 use crate::loaded::LoadedPlant;
+use crate::play;
 use crate::problem::Problem;
 use crate::record::PlantRecord;
 use crate::simulation::{one_step, rms, squares};
@@ -126,13 +127,13 @@ impl FittedPlant {
     fn later_line(&self, modulated: usize, later: &PlantRecord) -> Option<Column> {
         let plant = &self.problem.plant;
         let own = plant.catalogue.modulated[modulated];
-        if let Modulation::Error(error, input) = own.course {
+        if let Modulation::Play(input) = own.course {
             let inputs = &plant.description.inputs;
-            let steps = error.steps(later, inputs.len(), input, inputs[input].interpolate);
+            let steps = play::steps(later, (inputs.len(), input), inputs[input].interpolate);
             return Some(profile(own.of, steps));
         }
         let effects = plant.description.effects.iter();
-        let mut of_time = effects.filter(|effect| effect.kind != Kind::Term);
+        let mut of_time = effects.filter(|effect| !effect.kind.is_of_the_model());
         let kind = of_time.nth(modulated)?.kind;
         let rows = later.len();
         let steps: Vec<f64> = match kind {

@@ -6,7 +6,7 @@ use serde::Deserialize;
 use serde::de::IntoDeserializer as _;
 use serde::de::value::Error as WordError;
 
-use super::{Channel, EffectEntry, Kind, Knee, Place};
+use super::{Channel, Delay, EffectEntry, Kind, Knee, Place};
 use crate::error::PlantError;
 
 pub(super) fn channel(row: &Row<'_>) -> Result<Channel, PlantError> {
@@ -55,6 +55,14 @@ pub(super) fn knee(row: &Row<'_>) -> Result<Knee, PlantError> {
         unit: row.text("unit")?,
         value: row.number("value")?,
         sigma: row.number("sigma")?,
+    })
+}
+
+pub(super) fn delay(row: &Row<'_>) -> Result<Delay, PlantError> {
+    Ok(Delay {
+        input: row.index("input")?,
+        constant: row.index("constant")?,
+        time: row.index("time")?,
     })
 }
 

@@ -8,6 +8,7 @@ use nalgebra::{DMatrix, DVector};
 use super::FittedPlant;
 use crate::error::PlantError;
 use crate::lines::of_parameters;
+use crate::solve::Solver;
 
 /// Smallest range of a covariate that a dependence on it is looked for over, as a share of its size.
 const LEAST_RANGE: f64 = 1e-6;
@@ -66,7 +67,14 @@ impl FittedModel for FittedPlant {
     }
 
     fn refitted(&self, extension: &ModelExtension) -> Result<Self, PlantError> {
-        self.solved(extension, self.noise.clone(), self.start_of(extension))
+        let mut start = self.start_of(extension);
+        let solver = Solver::new(&self.problem, extension, self.noise.clone());
+        let mut new = solver.dead_times();
+        new.retain(|place| *place >= self.problem.nominal() && start.values[*place] == 0.0);
+        if !new.is_empty() {
+            start.values = solver.with_dead_times(&start.values, &new);
+        }
+        self.solved(extension, self.noise.clone(), start)
     }
 
     fn rate_noise(&self) -> RateNoise {

@@ -136,6 +136,13 @@ impl Solver<'_> {
         })
     }
 
+    /// The cost that the linear model about a simulation promises; `None` if that leaves the numbers.
+    pub(crate) fn promised(&self, values: &[f64]) -> Option<f64> {
+        let normal = self.simulated(&mut self.dynamics(), values).ok()?.normal;
+        let gained = solved(&normal.information, &normal.gradient).dot(&normal.gradient);
+        Some(normal.cost - gained).filter(|cost| cost.is_finite())
+    }
+
     fn found(&self, at: At) -> Solution {
         let change = solved(&at.normal.information, &at.normal.gradient);
         Solution {

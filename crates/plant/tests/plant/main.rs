@@ -2,6 +2,7 @@
 #![cfg(test)]
 
 mod coloured;
+mod delay;
 mod duffing;
 mod fit;
 mod gauge;

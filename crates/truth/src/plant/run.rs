@@ -5,6 +5,9 @@ use super::{Setting, Stream};
 /// Steps of the simulation between two rows: finer than those of any model.
 const FINE: usize = 10;
 
+/// The same where inputs change within a row: their places are met to a two-hundredth of it.
+const FINER: usize = 200;
+
 /// Kutta's 3/8 rule: the place of each stage in the step, with the weights of the rates before it. The
 /// classical rule of the platform's simulator would change all records in their last digits.
 const STAGES: [(f64, &[f64]); 4] = [
@@ -16,6 +19,9 @@ const STAGES: [(f64, &[f64]); 4] = [
 
 /// Its weights of the rates over the whole step.
 const WHOLE: [f64; 4] = [0.125, 0.375, 0.375, 0.125];
+
+/// Dead time of the inputs, rows.
+const LATE: &str = "drive.late_rows";
 
 /// A simulated record.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -64,10 +70,11 @@ pub(super) fn run<const N: usize>(
     // Half the width of the play between the first input, as it is logged, and what acts.
     let play = setting.size("drive.play");
     // What no catalogue has: correlation of the noise from row to row, noise of the last state per root
-    // second, rows of dead time, feedback of a row's own readings.
+    // second, feedback of a row's own readings.
     let correlation = setting.size("noise.correlation");
     let shaken = setting.size("rate.noise") * libm::sqrt(facts.step_s);
-    let late = setting.size("drive.late_rows") as usize;
+    // A dead time of all inputs, rows; readings see none of it.
+    let late = setting.size(LATE);
     let is_immediate = setting.size("feedback.same_row") > 0.0;
     let [mut noise, mut shakes] = [2, 3].map(|purpose| Stream::new(setting.seed, purpose));
     let fresh = libm::sqrt(1.0 - correlation * correlation);
@@ -81,8 +88,7 @@ pub(super) fn run<const N: usize>(
     let mut here = given(0, &vec![0.0; facts.sigmas.len()]);
     let mut behind = here[0];
     for row in 0..setting.rows {
-        let earlier = run.inputs.get(row.saturating_sub(late));
-        let mut acting = earlier.unwrap_or(&here).clone();
+        let mut acting = here.clone();
         if play > 0.0 {
             behind = behind.max(here[0] - play).min(here[0] + play);
             acting[0] = behind;
@@ -104,16 +110,29 @@ pub(super) fn run<const N: usize>(
         }
         let next = given(row + 1, &readings);
         let end = if facts.interpolate { &next } else { &acting };
+        let known = |wanted: usize| match wanted.checked_sub(row) {
+            None => &run.inputs[wanted],
+            Some(0) => &here,
+            Some(_) => &next,
+        };
         let rates = |place: f64, state: &[f64; N]| {
-            let inputs = acting.iter().zip(end);
-            let input: Vec<f64> = inputs.map(|(a, b)| a + place * (b - a)).collect();
+            let input = match late > 0.0 {
+                true => {
+                    let acts = (row as f64 + place - late).max(0.0);
+                    let share = if facts.interpolate { acts.fract() } else { 0.0 };
+                    let first = acts as usize;
+                    between(known(first), known(first + 1), share)
+                }
+                false => between(&acting, end, place),
+            };
             rates(&Moment {
                 share: share + part * place,
                 state,
                 input: &input,
             })
         };
-        state = step(facts.step_s, state, rates);
+        let parts = if late > 0.0 { FINER } else { FINE };
+        state = step(facts.step_s, parts, state, rates);
         if shaken > 0.0 {
             state[N - 1] += shaken * shakes.normal();
         }
@@ -124,14 +143,21 @@ pub(super) fn run<const N: usize>(
     run
 }
 
+/// Inputs at a share of the way from some to others.
+fn between(from: &[f64], to: &[f64], share: f64) -> Vec<f64> {
+    let inputs = from.iter().zip(to);
+    inputs.map(|(a, b)| a + share * (b - a)).collect()
+}
+
 /// The state after one step, in many parts; rates are given by the place in the step and the state.
 fn step<const N: usize>(
     step_s: f64,
+    parts: usize,
     mut state: [f64; N],
     rates: impl Fn(f64, &[f64; N]) -> [f64; N],
 ) -> [f64; N] {
-    let h = step_s / FINE as f64;
-    for index in 0..FINE {
+    let h = step_s / parts as f64;
+    for index in 0..parts {
         let mut slopes: Vec<[f64; N]> = Vec::with_capacity(STAGES.len());
         let moved = |weights: &[f64], slopes: &[[f64; N]]| -> [f64; N] {
             core::array::from_fn(|i| {
@@ -140,7 +166,7 @@ fn step<const N: usize>(
             })
         };
         for (place, weights) in STAGES {
-            let place = (index as f64 + place) / FINE as f64;
+            let place = (index as f64 + place) / parts as f64;
             slopes.push(rates(place, &moved(weights, &slopes)));
         }
         state = moved(&WHOLE, &slopes);
