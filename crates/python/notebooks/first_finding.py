@@ -49,7 +49,7 @@ truth = gyrocal.simulate(scenario)
 truth
 
 # %%
-truth.record.to_dataframe().describe()
+truth.record.to_pandas().describe()
 
 # %% [markdown]
 # ## Find it
@@ -61,7 +61,7 @@ found = gyrocal.diagnose(truth.record, truth.bench)
 found
 
 # %%
-found.to_dataframe().T
+found.to_pandas().T
 
 # %% [markdown]
 # The cause is the hidden one, and its size lies within five standard deviations of the truth.
@@ -82,7 +82,7 @@ f"{cause.effect}: {size.estimate:.5f} +- {size.sigma:.5f}, hidden {hidden.value}
 
 # %%
 calibrated = gyrocal.calibrate(truth.record, truth.bench, effects=[cause.effect])
-table = calibrated.to_dataframe().set_index("name")
+table = calibrated.to_pandas().set_index("name")
 extended = {one.name: one for one in calibrated.with_effects.coefficients}
 true = {one.name: one.value for one in truth.coefficients}
 table["true"] = true

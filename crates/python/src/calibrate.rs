@@ -6,8 +6,8 @@ use gyrocal::generated::MODEL_HASH;
 use gyrocal_calibration::{GyroAxes, Options, Run, shared_rows};
 use gyrocal_cli::NotCalibrated;
 use gyrocal_diagnosis::{
-    Blocks, CalibratedRecord, CalibrationRequest, DiagnoseOptions, Gate, calibrate_and_diagnose,
-    fit_effects,
+    Blocks, CalibratedRecord, CalibrationRequest, CalibrationStep, DiagnoseOptions, Gate,
+    calibrate_and_diagnose, fit_effects,
 };
 use gyrocal_record::{
     AveragedReport, Bench, CalibrationMethod, CalibrationReport, FittedEffects, InputRole,
@@ -54,7 +54,10 @@ impl Request {
     }
 }
 
-/// Estimates the coefficients; the result (JSON).
+/// The result (JSON), and the logarithm of the likelihood of the records, which it does not hold.
+type Calibrated = (String, Option<f64>);
+
+/// Estimates the coefficients.
 #[pyfunction]
 #[pyo3(signature = (runs, axes, method, factorised, noise, average_s, robust_sigmas, effects, command))]
 #[expect(
@@ -72,7 +75,7 @@ pub(crate) fn calibrate(
     robust_sigmas: Option<f64>,
     effects: Vec<String>,
     command: &str,
-) -> PyResult<String> {
+) -> PyResult<Calibrated> {
     let axes = axes.iter().map(|(name, axes)| axes.take(name));
     let axes: Vec<Axes> = axes.collect::<Outcome<_>>()?;
     let given: Vec<Given<'_>> = runs
@@ -92,7 +95,10 @@ pub(crate) fn calibrate(
         robust_sigmas,
         effects,
     };
-    Ok(py.detach(|| json(&report(&given, &request, command)?))?)
+    Ok(py.detach(|| -> Outcome<_> {
+        let (report, log_likelihood) = report(&given, &request, command)?;
+        Ok((json(&report)?, log_likelihood))
+    })?)
 }
 
 fn method_of(name: &str) -> Outcome<CalibrationMethod> {
@@ -125,7 +131,11 @@ struct Sound<'a> {
     setup: Vec<SetupProblem>,
 }
 
-fn report(given: &[Given<'_>], request: &Request, command: &str) -> Outcome<CalibrationReport> {
+fn report(
+    given: &[Given<'_>],
+    request: &Request,
+    command: &str,
+) -> Outcome<(CalibrationReport, Option<f64>)> {
     refuse_differing(given)?;
     let manifest = origin(given, command)?;
     let sound = sound(given, request, &manifest)?;
@@ -144,12 +154,19 @@ fn report(given: &[Given<'_>], request: &Request, command: &str) -> Outcome<Cali
         with_effects,
         manifest,
     };
-    calibrate_and_diagnose(asked, |_| ()).map_err(|source| {
+    let mut log_likelihood = None;
+    let report = calibrate_and_diagnose(asked, |step| {
+        if let CalibrationStep::Fitted(fitted) = step {
+            log_likelihood = Some(fitted.fit.log_likelihood());
+        }
+    });
+    let report = report.map_err(|source| {
         let (method, factorised) = (request.method, request.factorised);
         Failure::of_work(&NotCalibrated::new(
             &names, &runs, method, factorised, source,
         ))
-    })
+    })?;
+    Ok((report, log_likelihood))
 }
 
 /// Inputs in the order of the command: all records, then each bench description once, then the axes.

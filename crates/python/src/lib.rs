@@ -18,6 +18,8 @@ mod names;
 mod origin;
 mod plan;
 mod plant;
+mod plant_record;
+mod plant_series;
 mod record;
 mod report;
 mod simulate;
@@ -53,6 +55,8 @@ mod _gyrocal {
     use crate::plan::plan;
     #[pymodule_export]
     use crate::plant::{HeldPage, HeldPlant};
+    #[pymodule_export]
+    use crate::plant_record::HeldPlantRecord;
     #[pymodule_export]
     use crate::record::HeldRecord;
     #[pymodule_export]

@@ -2,14 +2,16 @@
 
 use std::path::Path;
 
+use gyrocal_instruments::ResultFile;
 use gyrocal_pages::{Part, of_plant};
-use gyrocal_plant::{LoadedPlant, PlantError, PlantRecord, SearchOptions, diagnose};
+use gyrocal_plant::{LoadedPlant, PlantError, SearchOptions, diagnose, fit};
 use gyrocal_record::{Input, Manifest, printable_path};
-use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
 
 use crate::error::{Class, Failure, Outcome};
-use crate::origin::{answer_text, manifest};
+use crate::origin::{answer_text, json, manifest};
+use crate::plant_record::{GivenColumns, HeldPlantRecord};
+use crate::plant_series::{Series, SeriesArrays};
 
 /// A plant that is ready to be fitted.
 #[pyclass(frozen, name = "Plant", module = "gyrocal._gyrocal")]
@@ -23,47 +25,8 @@ pub(crate) struct HeldPage {
     pub(crate) part: Outcome<Part>,
 }
 
-/// The result (JSON) and its page.
-type Answer = (String, HeldPage);
-
-/// The columns of a record: time, inputs, outputs and logged quantities in the order of the plant.
-#[derive(Clone, Debug)]
-struct Columns {
-    name: String,
-    time_s: Vec<f64>,
-    inputs: Vec<Vec<f64>>,
-    outputs: Vec<Vec<f64>>,
-    regressors: Vec<Vec<f64>>,
-}
-
-/// The same as Python hands it over.
-#[derive(FromPyObject)]
-pub(crate) struct GivenColumns<'py> {
-    #[pyo3(item)]
-    name: String,
-    #[pyo3(item)]
-    time_s: PyReadonlyArray1<'py, f64>,
-    #[pyo3(item)]
-    inputs: Vec<PyReadonlyArray1<'py, f64>>,
-    #[pyo3(item)]
-    outputs: Vec<PyReadonlyArray1<'py, f64>>,
-    #[pyo3(item)]
-    regressors: Vec<PyReadonlyArray1<'py, f64>>,
-}
-
-impl GivenColumns<'_> {
-    fn columns(&self) -> Columns {
-        let column = |given: &PyReadonlyArray1<'_, f64>| given.as_array().to_vec();
-        let all = |given: &[PyReadonlyArray1<'_, f64>]| given.iter().map(column).collect();
-        Columns {
-            name: self.name.clone(),
-            time_s: column(&self.time_s),
-            inputs: all(&self.inputs),
-            outputs: all(&self.outputs),
-            regressors: all(&self.regressors),
-        }
-    }
-}
+/// The result (JSON), its page, and the outputs over time.
+type Answer<'py> = (String, HeldPage, SeriesArrays<'py>);
 
 impl From<PlantError> for Failure {
     fn from(error: PlantError) -> Self {
@@ -131,74 +94,79 @@ impl HeldPlant {
         effects.map(|effect| effect.id).collect()
     }
 
-    /// Diagnoses a record: the result (JSON) and its page. `inputs` are names and hashes, and
-    /// `command` is the call, both for the manifest.
-    fn diagnose(
+    /// Takes the columns of a record.
+    fn record(&self, py: Python<'_>, columns: GivenColumns<'_>) -> PyResult<HeldPlantRecord> {
+        let plant = self.plant.description();
+        Ok(HeldPlantRecord::new(py, plant, &columns)?)
+    }
+
+    /// Diagnoses a record. `inputs` are names and hashes, and `command` is the call, both for the manifest.
+    fn diagnose<'py>(
         &self,
-        py: Python<'_>,
-        record: GivenColumns<'_>,
-        later: Option<GivenColumns<'_>>,
+        py: Python<'py>,
+        record: &Bound<'py, HeldPlantRecord>,
+        later: Option<Bound<'py, HeldPlantRecord>>,
         false_alarm: f64,
         inputs: Vec<(String, String)>,
         command: &str,
-    ) -> PyResult<Answer> {
-        let record = record.columns();
-        let later = later.map(|later| later.columns());
+    ) -> PyResult<Answer<'py>> {
+        let (record, later) = (record.get(), later.as_ref().map(Bound::get));
         let options = options(false_alarm)?;
+        let manifest = self.manifest(options.seed, inputs, command);
+        let (text, page, series) = py.detach(|| self.answer(record, later, &options, manifest))?;
+        Ok((text, page, series.arrays(py)?))
+    }
+
+    /// Fits a record, and searches nothing: the result (JSON), and the outputs over time.
+    fn fit<'py>(
+        &self,
+        py: Python<'py>,
+        record: &Bound<'py, HeldPlantRecord>,
+        later: Option<Bound<'py, HeldPlantRecord>>,
+        first_rows: usize,
+        inputs: Vec<(String, String)>,
+        command: &str,
+    ) -> PyResult<(String, SeriesArrays<'py>)> {
+        let named = |held: &Bound<'py, HeldPlantRecord>| held.get().named.clone();
+        let (record, later) = (named(record), later.as_ref().map(named));
+        let manifest = self.manifest(0, inputs, command);
+        let (text, series) = py.detach(|| -> Outcome<_> {
+            let fit = fit(&self.plant, record, later, first_rows, &mut |_, _| ())?;
+            let text = json(&ResultFile::new(manifest, &fit.answer))?;
+            Ok((text, Series::of(&fit.fitted)?))
+        })?;
+        Ok((text, series.arrays(py)?))
+    }
+}
+
+impl HeldPlant {
+    fn manifest(&self, seed: u64, inputs: Vec<(String, String)>, command: &str) -> Manifest {
         let inputs = inputs.into_iter().map(|(path, sha256)| Input {
             path,
             sha256,
             ..Input::default()
         });
-        let manifest = manifest(self.plant.hash(), options.seed, inputs.collect(), command);
-        Ok(py.detach(|| self.answer(record, later, &options, manifest))?)
+        manifest(self.plant.hash(), seed, inputs.collect(), command)
     }
-}
 
-impl HeldPlant {
     fn answer(
         &self,
-        record: Columns,
-        later: Option<Columns>,
+        record: &HeldPlantRecord,
+        later: Option<&HeldPlantRecord>,
         options: &SearchOptions,
         manifest: Manifest,
-    ) -> Outcome<Answer> {
-        let path = Path::new(&record.name);
+    ) -> Outcome<(String, HeldPage, Series)> {
+        let path = Path::new(&record.named.name);
         let name = printable_path(path.file_name().map_or(path, Path::new));
-        let record = self.record(record)?;
-        let later = later.map(|later| self.record(later)).transpose()?;
-        let mut diagnosed = diagnose(&self.plant, record, later, options)?;
+        let rows = |held: &HeldPlantRecord| held.named.record.clone();
+        let mut diagnosed = diagnose(&self.plant, rows(record), later.map(rows), options)?;
         let part = of_plant(&diagnosed, &name, &manifest).map_err(|error| Failure::of_text(&error));
         diagnosed.answer.manifest = manifest;
         let result = answer_text(&diagnosed.answer)?;
-        Ok((result, HeldPage { part }))
-    }
-
-    fn record(&self, columns: Columns) -> Outcome<PlantRecord> {
-        let Columns {
-            name,
-            time_s,
-            inputs,
-            outputs,
-            regressors,
-        } = columns;
-        let by_rows = |columns: &[Vec<f64>]| -> Vec<f64> {
-            let rows = 0..time_s.len();
-            rows.flat_map(|row| {
-                columns
-                    .iter()
-                    .filter_map(move |column| column.get(row).copied())
-            })
-            .collect()
+        let best = match diagnosed.answer.has_findings() {
+            true => &diagnosed.searched.fitted,
+            false => &diagnosed.searched.nominal,
         };
-        let record = PlantRecord {
-            inputs: by_rows(&inputs),
-            outputs: by_rows(&outputs),
-            regressors,
-            regressor_means: Vec::new(),
-            starts: Vec::new(),
-            time_s,
-        };
-        Ok(record.prepared(self.plant.description(), &name)?)
+        Ok((result, HeldPage { part }, Series::of(best)?))
     }
 }

@@ -1,13 +1,18 @@
 //! Pages of results.
 
-use gyrocal_answer::read_text;
+use gyrocal_answer::{PlantFit, read_text};
 use gyrocal_design::PlanResult;
 use gyrocal_document::Words;
+use gyrocal_evaluation::CharacteriseReport;
 use gyrocal_fleet::FleetResult;
-use gyrocal_pages::{Part, of_calibration, of_fleet, of_plan, of_result, page, read as read_part};
-use gyrocal_record::{CalibrationReport, SourceText};
+use gyrocal_pages::{
+    Part, of_calibration, of_characterise, of_fit, of_fleet, of_plan, of_result, page,
+    read as read_part, read_sections,
+};
+use gyrocal_record::{CalibrationReport, Manifest, SourceText};
 use gyrocal_report::{to_html, words_to_html};
 use pyo3::prelude::*;
+use serde::Deserialize;
 use serde::de::DeserializeOwned;
 
 use crate::error::{Failure, Outcome};
@@ -17,10 +22,20 @@ use crate::plant::HeldPage;
 /// A result: its class, its text (JSON) and, of a plant, its page.
 type Given<'a> = (&'a str, &'a str, Option<&'a HeldPage>);
 
-/// What is read of a result (JSON): its first screen and the sections of its page.
+/// The fit of a plant with its manifest, as it is written.
+#[derive(Deserialize)]
+struct WrittenFit {
+    manifest: Manifest,
+    #[serde(flatten)]
+    fit: PlantFit,
+}
+
+/// What is read of a result (JSON): its first screen, and the sections of its page, each as words (JSON).
 #[pyfunction]
-pub(crate) fn words_of(kind: &str, result: &str) -> PyResult<String> {
-    Ok(json(&read_part(&part((kind, result, None))?))?)
+pub(crate) fn words_of(kind: &str, result: &str) -> PyResult<(String, String)> {
+    let mut part = part((kind, result, None))?;
+    let sections = read_sections(&std::mem::take(&mut part.sections));
+    Ok((json(&read_part(&part))?, json(&sections)?))
 }
 
 /// An answer in words (JSON) as text for a terminal.
@@ -63,7 +78,12 @@ fn part((kind, result, page): Given<'_>) -> Outcome<Part> {
             of_calibration(&report, &[]).map_err(|error| Failure::of_text(&error))?
         }
         "Plan" => of_plan(&read::<PlanResult>(result)?),
+        "Characteristics" => of_characterise(&read::<CharacteriseReport>(result)?),
         "Fleet" => of_fleet(&read::<FleetResult>(result)?),
+        "PlantFit" => {
+            let WrittenFit { manifest, fit } = read(result)?;
+            of_fit(&fit, &manifest)
+        }
         "PlantDiagnosis" => match page {
             Some(page) => page.part.clone()?,
             // One that was pickled has no charts.
@@ -73,8 +93,8 @@ fn part((kind, result, page): Given<'_>) -> Outcome<Part> {
             return Err(Failure::of_value(
                 "report",
                 other,
-                "a Calibration, a Diagnosis, a Plan, a Fleet or a PlantDiagnosis",
-                "its numbers are in to_dict() and to_dataframe()",
+                "a Calibration, a Diagnosis, a Plan, a Characteristics, a Fleet, a PlantDiagnosis or a PlantFit",
+                "its numbers are in to_dict() and to_pandas()",
             ));
         }
     })

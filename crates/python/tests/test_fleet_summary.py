@@ -46,7 +46,7 @@ def results():
 def test_coefficients_of_a_fleet(results, tmp_path):
     found = fleet.summarise(results)
     assert (found.units, found.records, found.problems) == (UNITS, 2 * UNITS, [])
-    frame = found.to_dataframe().set_index("name")
+    frame = found.to_pandas().set_index("name")
     row = frame.loc["gyro_x.bias"]
     # Biases of 0.40 to 0.47, and 0.02 more in the second record.
     assert row.mean_low < 0.445 < row.mean_high

@@ -308,6 +308,8 @@ SCENARIO = "examples/data/three_days.scenario.toml"
         (lambda r, b: gyrocal.Plant(PLANT).diagnose(5), "record", "a int"),
         (lambda r, b: gyrocal.Plant(PLANT).diagnose({}, 5), "columns", "a int"),
         (lambda r, b: gyrocal.Plant(PLANT).diagnose({}, false_alarm="0.01"), "false_alarm", "'0.01'"),
+        (lambda r, b: gyrocal.Plant(PLANT).fit({}, first_rows=-1), "first_rows", "-1"),
+        (lambda r, b: gyrocal.Plant(PLANT).fit({}, first_rows=1.5), "first_rows", "1.5"),
         (lambda r, b: fleet.summarise([], seed=-1), "seed", "-1"),
         (lambda r, b: fleet.summarise(5), "results", "a int"),
         (lambda r, b: list(fleet.diagnose_batches("abc")), "batches", "a str"),

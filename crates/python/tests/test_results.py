@@ -2,6 +2,7 @@
 
 import copy
 import importlib.metadata
+import os
 import re
 import subprocess
 import sys
@@ -46,7 +47,7 @@ def test_the_manifest_has_the_call(simulated):
     assert found.manifest.command == (
         "gyrocal.calibrate(<simulation>, [<dict>], effects=['gyro_y.g_z'], average_s=600.0, robust_sigmas=3)"
     )
-    found = gyrocal.calibrate(simulated.record.to_dataframe(), bench, method="paper", factorised=True)
+    found = gyrocal.calibrate(simulated.record.to_pandas(), bench, method="paper", factorised=True)
     assert found.manifest.command == (
         "gyrocal.calibrate(<DataFrame>, <simulation>.bench, method='paper', factorised=True)"
     )
@@ -57,14 +58,14 @@ def test_the_manifest_has_the_call(simulated):
 
 
 def test_frames(simulated, diagnosed):
-    findings = diagnosed.to_dataframe()
+    findings = diagnosed.to_pandas()
     assert list(findings.effect) == [one.effect for one in diagnosed.findings]
     assert findings["size"][0] == diagnosed.findings[0].parameters[0].estimate
     calibrated = gyrocal.calibrate(simulated.record, simulated.bench)
-    coefficients = calibrated.to_dataframe().set_index("name")
+    coefficients = calibrated.to_pandas().set_index("name")
     assert coefficients.loc["gyro_x.bias", "estimate"] == calibrated.estimates[0]
-    assert list(simulated.record.to_dataframe().columns) == list(gyrocal.COLUMNS[:4])
-    assert list(simulated.to_dataframe().name) == calibrated.names
+    assert list(simulated.record.to_pandas().columns) == list(gyrocal.COLUMNS[:4])
+    assert list(simulated.to_pandas().name) == calibrated.names
 
 
 def test_frames_of_all_kinds_hold_the_same(simulated, diagnosed):
@@ -83,6 +84,11 @@ def test_a_missing_package_is_told(monkeypatch, diagnosed):
         monkeypatch.setitem(sys.modules, package, None)
         with pytest.raises(ImportError, match=f"python -m pip install {package}"):
             getattr(diagnosed, frame)()
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    monkeypatch.setitem(sys.modules, "matplotlib.pyplot", None)
+    with pytest.raises(ImportError, match=r"python -m pip install 'gyrocal\[plot\]'") as caught:
+        diagnosed.plot()
+    assert caught.value.name == "matplotlib"
 
 
 def test_names_that_other_packages_use(simulated, diagnosed):
@@ -98,23 +104,81 @@ def test_names_that_other_packages_use(simulated, diagnosed):
         width = np.diff(calibrated.conf_int(alpha))[:, 0]
         assert np.allclose(width, 2 * sigmas * calibrated.bse, rtol=1e-6)
     assert np.array_equal(diagnosed.conf_int(), [one.interval for one in diagnosed.coefficients.over_set])
+    assert calibrated.nobs == calibrated.rows == len(simulated.record)
+    again = gyrocal.from_json(calibrated.to_json())
+    assert copy.copy(calibrated).llf == calibrated.llf and not hasattr(again, "llf")
+    with pytest.raises(AttributeError, match="read from JSON"):
+        again.llf
     assert diagnosed.pvalues == {one.effect: one.p_value for one in diagnosed.findings}
     for wrong, one in [(2.0, calibrated), ("a", calibrated), (0.1, diagnosed)]:
         with pytest.raises(gyrocal.InputError, match="^alpha: found"):
             one.conf_int(wrong)
 
 
+def test_the_likelihood_of_a_calibration_is_that_of_its_values():
+    bench = gyrocal.Bench.read("examples/data/three_days.bench.toml").to_dict()
+    wide = bench | {"noise": {name: 10.0 * value for name, value in bench["noise"].items()}}
+    right, wide = (
+        gyrocal.calibrate("examples/data/three_days.csv", one, noise=False) for one in (bench, wide)
+    )
+    # Ten times the noise of all: each value has a tenth of the density, less its square, of which a hundredth is left.
+    expected = right.nobs * (3.0 * np.log(10.0) - 0.5 * right.nis_mean * (1.0 - 1.0 / 100.0))
+    # Priors of the attitude stay as they are.
+    assert right.llf - wide.llf == pytest.approx(expected, rel=0.02)
+
+
+def test_plots_show_the_coefficients_with_their_intervals(simulated, diagnosed):
+    calibrated = gyrocal.calibrate(simulated.record, simulated.bench)
+    for one, alpha in [(calibrated, 0.1), (diagnosed, 0.05)]:
+        figure = one.plot(alpha)
+        assert [axes.get_xlabel() for axes in figure.axes] == ["deg/h", "deg/h/g", "deg/h/g^2"]
+        shown = {}
+        for axes in figure.axes:
+            names = [label.get_text() for label in axes.get_yticklabels()]
+            (bars,) = axes.containers
+            points, _, (ends,) = bars.lines
+            for name, value, end in zip(names, points.get_xdata(), ends.get_segments()):
+                shown[name] = (value, *end[:, 0])
+        assert list(shown) != one.names and set(shown) == set(one.names)
+        expected = np.column_stack([one.params, one.conf_int(alpha)])
+        assert np.allclose([shown[name] for name in one.names], expected, rtol=1e-12, atol=0.0)
+    other = one.plot(fig=figure)
+    assert other is figure
+    with pytest.raises(gyrocal.InputError, match="^alpha: found"):
+        calibrated.plot(2.0)
+
+
+def test_a_wrong_set_up_leaves_no_coefficients(simulated):
+    record = gyrocal.Record(simulated.record.time_s, 9.80665 * simulated.record.accel_g)
+    found = gyrocal.diagnose(record, simulated.bench)
+    with pytest.raises(gyrocal.SetupError) as caught:
+        gyrocal.calibrate(record, simulated.bench)
+    for one in (found, caught.value.result):
+        assert one.verdict == "setup" and one.names == [] and one.params.shape == one.bse.shape == (0,)
+        assert one.conf_int().shape == (0, 2) and one.cov_params().size == 0 and not hasattr(one, "llf")
+        with pytest.raises(gyrocal.InputError, match="plot: found a result without coefficients"):
+            one.plot()
+
+
 def test_a_summary_is_the_first_screen_of_the_command(tmp_path):
     files = ["examples/data/hidden_fault.csv", "examples/data/hidden_fault.bench.toml"]
+    # Lines of a pipe are as long as they need.
+    unbroken = {name: value for name, value in os.environ.items() if name != "COLUMNS"}
     for name in ("diagnose", "calibrate", "plan"):
         found = getattr(gyrocal, name)(*files)
         shown = subprocess.run(
-            [command(), name, files[0], "--bench", files[1]], capture_output=True, text=True, check=True
+            [command(), name, files[0], "--bench", files[1]],
+            capture_output=True, text=True, check=True, env=unbroken,
         ).stdout
         # The command sets the same words in columns, and its next steps otherwise.
-        facts, screen = (re.sub(r"[-:\s]+", " ", text) for text in (found.summary().split("\n\nNext")[0], shown))
-        assert set(facts.split()) <= set(screen.split())
-        assert str(found).startswith(found.summary()) and len(found.summary()) < len(str(found)) / 2
+        facts = found.summary().split("\n\nNext")[0]
+        screen = re.split(r"^(?:next|all tables) ", shown, flags=re.MULTILINE)[0]
+        facts, screen = (re.sub(r"[-:\s]+", " ", text).strip() for text in (facts, screen))
+        assert facts == screen
+        commands = re.findall(r"^next +(.*?)   # ", shown, flags=re.MULTILINE)
+        assert found.summary().count("Next, ") == len(commands) > 0
+        assert all(" ".join(one.split()) in " ".join(found.summary().split()) for one in commands)
+        assert str(found).startswith(found.summary() + "\n") and len(found.summary()) < len(str(found)) / 2
 
 
 def test_results_are_read_from_json(tmp_path, simulated, diagnosed):
@@ -122,6 +186,7 @@ def test_results_are_read_from_json(tmp_path, simulated, diagnosed):
     planned = gyrocal.plan(simulated.record, simulated.bench, diagnosis=diagnosed, hours=24)
     measured = gyrocal.characterise("clean", runs=1, methods=[])
     file = tmp_path / "result.json"
+    assert "figures hold" in measured.summary() and len(measured.summary()) < len(str(measured)) / 2
     for one in (calibrated, diagnosed, planned, measured):
         file.write_text(one.to_json(), encoding="utf-8")
         for again in (gyrocal.from_json(one.to_json()), gyrocal.from_json(file), gyrocal.from_json(str(file))):

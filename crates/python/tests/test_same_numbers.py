@@ -20,7 +20,7 @@ def test_diagnosis(tmp_path):
     assert found.findings[0].effect == "gyro_y.g_z"
 
     # The values of a frame are those of the file; where they come from is another thing.
-    frame = gyrocal.Record.read(FAULT[0]).to_dataframe()
+    frame = gyrocal.Record.read(FAULT[0]).to_pandas()
     of_frame = gyrocal.diagnose(frame, FAULT[1]).to_dict()
     for result in (of_frame, by_command):
         del result["manifest"]
@@ -178,7 +178,7 @@ def test_plan(tmp_path, simulated):
     options = {"hours": 12.0, "limits_deg": {"x": (-60.0, 60.0)}}
     planned = gyrocal.plan(record, bench, **options)
     assert without_command_line(planned.to_dict()) == without_command_line(by_command)
-    assert list(planned.to_dataframe().hours) == [12.0] * len(planned.proposals)
+    assert list(planned.to_pandas().hours) == [12.0] * len(planned.proposals)
     assert planned.manifest.command == (
         f"gyrocal.plan('{record}', '{bench}', hours=[12.0], limits_deg={{'x': [-60.0, 60.0]}})"
     )

@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 import polars as pl
 import pyarrow as pa
+from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 import gyrocal
@@ -23,7 +24,7 @@ assert_type(bench.latitude_deg, float)
 calibrated = gyrocal.calibrate(simulated.record, bench)
 assert_type(calibrated, gyrocal.Calibration)
 assert_type(calibrated.covariance, NDArray[np.float64])
-assert_type(calibrated.to_dataframe(), pd.DataFrame)
+assert_type(calibrated.to_pandas(), pd.DataFrame)
 assert_type(calibrated.to_polars(), pl.DataFrame)
 assert_type(calibrated.params, NDArray[np.float64])
 assert_type(calibrated.conf_int(alpha=0.1), NDArray[np.float64])
@@ -49,6 +50,14 @@ assert_type(plant.inputs, list[str])
 of_plant = plant.diagnose("record.csv", "columns.toml", later=pd.DataFrame())
 assert_type(of_plant, gyrocal.PlantDiagnosis)
 of_plant.report("page.html")
+assert_type(of_plant.resid, NDArray[np.float64])
+fit = plant.fit(pd.DataFrame(), first_rows=3)
+assert_type(fit, gyrocal.PlantFit)
+assert_type(fit.bic, float)
+assert_type(fit.predict(one_step=True), NDArray[np.float64])
+assert_type(fit.plot(), Figure)
+assert_type(calibrated.plot(alpha=0.1), Figure)
+assert_type(calibrated.llf, float)
 
 for batch in fleet.diagnose_batches([pa.RecordBatch.from_pylist([], fleet.INPUT)]):
     assert_type(fleet.summarise([batch]), gyrocal.Fleet)

@@ -11,23 +11,14 @@ numbers that the command ``gyrocal`` gives.
 """
 
 from ._calls import calibrate, characterise, diagnose, plan, simulate
-from ._errors import ComputationError, GyrocalError, InputError, SetupError
+from ._errors import ComputationError, GyrocalError, GyrocalWarning, InputError, SetupError
+from ._from_json import from_json
 from ._gyrocal import VERSION as __version__
 from ._plant import Plant
+from ._plant_results import PlantDiagnosis, PlantFit
 from ._record import COLUMNS, Bench, Record
-from ._results import (
-    Calibration,
-    Characteristics,
-    Diagnosis,
-    Fields,
-    Fleet,
-    Plan,
-    PlantDiagnosis,
-    Result,
-    Simulation,
-    from_json,
-    report,
-)
+from ._result import Fields, Result, report
+from ._results import Calibration, Characteristics, Diagnosis, Fleet, Plan, Simulation
 
 __all__ = [
     "COLUMNS",
@@ -39,10 +30,12 @@ __all__ = [
     "Fields",
     "Fleet",
     "GyrocalError",
+    "GyrocalWarning",
     "InputError",
     "Plan",
     "Plant",
     "PlantDiagnosis",
+    "PlantFit",
     "Record",
     "Result",
     "SetupError",

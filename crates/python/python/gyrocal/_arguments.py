@@ -95,7 +95,7 @@ _KINDS: dict[str, tuple[str, Callable[[Any], bool]]] = {
     for names, expected, fits in (
         ("aim", "set or sigmas", _is_text),
         ("method", "batch, streaming or paper", _is_text),
-        ("noise factorised one_name", "True or False", lambda value: isinstance(value, (bool, np.bool_))),
+        ("noise factorised one_name one_step", "True or False", lambda value: isinstance(value, (bool, np.bool_))),
         (
             "alpha false_alarm false_discovery_rate group_probability outlier_probability",
             "a probability between 0 and 1",
@@ -106,7 +106,7 @@ _KINDS: dict[str, tuple[str, Callable[[Any], bool]]] = {
             "a positive number",
             lambda value: _is_number(value) and 0.0 < value < float("inf"),
         ),
-        ("seed", "an integer of at least 0 and below 2^63", lambda value: _is_integer(value, 0)),
+        ("seed first_rows", "an integer of at least 0 and below 2^63", lambda value: _is_integer(value, 0)),
         ("runs threads", "an integer of at least 1 and below 2^63", lambda value: _is_integer(value, 1)),
         ("effects methods cells", "a list of names", lambda value: _is_list(value, _is_text)),
         ("hours", "a number of hours, or a list of them", lambda value: _is_list(value, _is_number)),

@@ -124,13 +124,13 @@ def calibrate(
     _check_calibration(method, len(given), robust_sigmas, noise, factorised)
     runs = [(one._held, other._held) for one, other in zip(given, benches)]
     try:
-        text = _gyrocal.calibrate(
+        answer = _gyrocal.calibrate(
             runs, axes, method, factorised, noise, average_s, robust_sigmas, list(effects), command
         )
     except SetupError as error:
         error.result = Calibration(error.result)
         raise
-    return Calibration(text)
+    return Calibration(*answer)
 
 
 def diagnose(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-__all__ = ["ComputationError", "GyrocalError", "InputError", "SetupError", "refusal"]
+__all__ = ["ComputationError", "GyrocalError", "GyrocalWarning", "InputError", "SetupError", "refusal"]
 
 
 class GyrocalError(Exception):
@@ -103,6 +103,14 @@ class ComputationError(GyrocalError, RuntimeError):
     >>> import gyrocal
     >>> issubclass(gyrocal.ComputationError, (gyrocal.GyrocalError, RuntimeError))
     True
+    """
+
+
+class GyrocalWarning(UserWarning):
+    """What is to be known of a record before its result is used; the words are those of the command.
+
+    >>> import gyrocal, warnings
+    >>> warnings.simplefilter("always", gyrocal.GyrocalWarning)
     """
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import os
+import warnings
 from collections.abc import Mapping
 from numbers import Real
 from pathlib import Path
@@ -14,9 +15,9 @@ from numpy.typing import NDArray
 
 from . import _gyrocal
 from ._arguments import call
-from ._errors import InputError, refusal
+from ._errors import GyrocalWarning, InputError, refusal
+from ._plant_results import PlantDiagnosis, PlantFit
 from ._record import _column, _json, refuse_no_frame
-from ._results import PlantDiagnosis
 
 __all__ = ["Plant"]
 
@@ -120,14 +121,72 @@ class Plant:
         <gyrocal.PlantDiagnosis of Duffing, effects-found: v_rate.x^3>
         """
         command = call(Plant.diagnose, locals())
-        given, own = self._columns(record, columns)
-        program, name = self._program
-        inputs = [own, *_input_of_map(columns), (name, _sha256(program.encode()))]
-        other = None
-        if later is not None:
-            other, own = self._columns(later, columns if later_columns is None else later_columns)
-            inputs += [own, *_input_of_map(later_columns)]
+        given, inputs = self._record(record, columns)
+        other, later_inputs = self._later(later, columns, later_columns)
+        inputs += [self._input(), *later_inputs]
+        _tell_gaps(given, other)
         return PlantDiagnosis(*self._held.diagnose(given, other, false_alarm, inputs, command))
+
+    def fit(
+        self,
+        record: Any,
+        columns: Mapping[str, Any] | str | os.PathLike[str] | None = None,
+        *,
+        later: Any = None,
+        later_columns: Mapping[str, Any] | str | os.PathLike[str] | None = None,
+        first_rows: int = 0,
+    ) -> PlantFit:
+        """Fits the model of the plant to a record, and searches nothing.
+
+        Args:
+            record: A CSV file, a frame of pandas or Polars, an Arrow table or a mapping of columns.
+            columns: Its columns by the names of the plant, as :meth:`diagnose` takes them.
+            later: A later record of the same plant, which has no part in the fit.
+            later_columns: Its columns, if they differ.
+            first_rows: Rows at the beginning of each record that errors do not count. Those of a later record tell
+                its initial states.
+
+        Returns:
+            The parameters and initial states in the units of the plant, their covariance, the likelihood with its
+            criteria, the errors of simulations, and the outputs over time.
+
+        Raises:
+            InputError: A record, a column or an argument is wrong.
+            ComputationError: The plant could not be fitted.
+
+        >>> import gyrocal
+        >>> plant = gyrocal.Plant("examples/duffing/plant.json")
+        >>> columns = {"time": "time_s", "inputs": {"u": "drive_n"}, "outputs": {"y": "displacement_m"}}
+        >>> plant.fit("examples/duffing/record.csv", columns)
+        <gyrocal.PlantFit of Duffing: 5 coefficients>
+        """
+        command = call(Plant.fit, locals())
+        given, inputs = self._record(record, columns)
+        other, later_inputs = self._later(later, columns, later_columns)
+        inputs += [*later_inputs, self._input()]
+        _tell_gaps(given, other)
+        return PlantFit(*self._held.fit(given, other, first_rows, inputs, command))
+
+    def _record(self, record: Any, columns: Any) -> tuple[_gyrocal.PlantRecord, list[Input]]:
+        """A record, and what the manifest tells of it and of its map."""
+        found, own = self._columns(record, columns)
+        return self._held.record(found), [own, *_input_of_map(columns)]
+
+    def _later(
+        self, later: Any, columns: Any, later_columns: Any
+    ) -> tuple[_gyrocal.PlantRecord | None, list[Input]]:
+        if later is None:
+            return None, []
+        if later_columns is not None:
+            return self._record(later, later_columns)
+        # Its map is that of the record, which is told already.
+        found, inputs = self._record(later, columns)
+        return found, inputs[:1]
+
+    def _input(self) -> Input:
+        """What the manifest tells of the plant."""
+        program, name = self._program
+        return name, _sha256(program.encode())
 
     def _columns(self, record: Any, columns: Any) -> tuple[dict[str, Any], Input]:
         """The columns of a record by the names of the plant, and what is told of it in the manifest."""
@@ -152,10 +211,12 @@ class Plant:
                 )
             return [_values(frame, known[one], name) for one in names]
 
+        inputs = group("inputs", self.inputs)
         found = {
             "name": name,
+            "input_columns": [_column_name(places["inputs"][one]) for one in self.inputs],
             "time_s": _values(frame, _time(places), name),
-            "inputs": group("inputs", self.inputs),
+            "inputs": inputs,
             "outputs": group("outputs", self.outputs),
             "regressors": group("regressors", self.regressors),
         }
@@ -194,6 +255,17 @@ def _of_program(text: str, name: str) -> Plant:
     plant = Plant.__new__(Plant)
     plant._set(text, name)
     return plant
+
+
+def _tell_gaps(*records: _gyrocal.PlantRecord | None) -> None:
+    """Warns, where a method of the plant is called, of inputs that a record does not tell for a while."""
+    for words in (words for record in records if record is not None for words in record.bridged):
+        warnings.warn(words, GyrocalWarning, stacklevel=3)
+
+
+def _column_name(source: Source) -> str:
+    """Name of a column, for words."""
+    return str(source["column"] if isinstance(source, Mapping) else source)
 
 
 def _time(places: Mapping[str, Any]) -> Source:

@@ -6,7 +6,6 @@ import json
 import os
 import textwrap
 from collections.abc import Iterable, Iterator
-from itertools import pairwise
 from typing import Any
 
 from . import _gyrocal
@@ -14,7 +13,7 @@ from ._arguments import as_list
 from ._errors import refusal
 from ._table import Table
 
-__all__ = ["Fields", "Result", "report", "table"]
+__all__ = ["Fields", "Result", "report"]
 
 
 class Fields:
@@ -35,6 +34,10 @@ class Fields:
     def __getattr__(self, name: str) -> Any:
         if name.startswith("__"):
             raise AttributeError(name)
+        own = getattr(type(self), name, None)
+        if isinstance(own, property):
+            # It is asked again, for its own words why there is none.
+            return own.__get__(self)
         try:
             return _wrapped(self._fields[name])
         except KeyError:
@@ -117,11 +120,8 @@ class Result(Fields, Table):
 
     def summary(self) -> str:
         """What was found, how sure, and what to do next: the first screen of the command, as text."""
-        shown = self._shown()
-        # After it come the sections: paragraphs that no command follows.
-        pairs = enumerate(pairwise(shown[1:]), start=1)
-        end = next((at for at, (one, after) in pairs if "paragraph" in one and "command" not in after), None)
-        return _text(shown[:end])
+        first, _ = self._words()
+        return _text(first)
 
     def report(self, path: str | os.PathLike[str]) -> None:
         """Writes the result as an HTML page, one file that needs no network.
@@ -143,10 +143,14 @@ class Result(Fields, Table):
         names = dict.fromkeys(name for row in rows for name in row)
         return {name: [row.get(name) for row in rows] for name in names}
 
+    def _words(self) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
+        """The first screen, and the sections of the page, as sentences, lists and tables."""
+        first, sections = _gyrocal.words_of(type(self).__name__, self._text)
+        return json.loads(first), json.loads(sections)
+
     def _shown(self) -> list[dict[str, Any]]:
-        """Sentences and tables."""
-        words: list[dict[str, Any]] = json.loads(_gyrocal.words_of(type(self).__name__, self._text))
-        return words
+        first, sections = self._words()
+        return first + sections
 
     def __str__(self) -> str:
         return _text(self._shown())
@@ -167,8 +171,8 @@ def report(results: Result | Iterable[Result], path: str | os.PathLike[str]) -> 
 
     Args:
         results: A result, or several in the order of the page: of :func:`gyrocal.calibrate`,
-            :func:`gyrocal.diagnose`, :func:`gyrocal.plan`, :func:`gyrocal.fleet.summarise` and
-            :meth:`gyrocal.Plant.diagnose`.
+            :func:`gyrocal.diagnose`, :func:`gyrocal.plan`, :func:`gyrocal.characterise`,
+            :func:`gyrocal.fleet.summarise`, :meth:`gyrocal.Plant.diagnose` and :meth:`gyrocal.Plant.fit`.
         path: The file to write.
 
     Raises:
@@ -186,15 +190,8 @@ def report(results: Result | Iterable[Result], path: str | os.PathLike[str]) -> 
     if wrong or not given:
         raise refusal(
             "results", f"a {type(wrong[0]).__name__}" if wrong else "no result", "a result, or a list of them",
-            "give what calibrate, diagnose, plan, fleet.summarise or Plant.diagnose returned",
+            "give what calibrate, characterise, diagnose, plan, fleet.summarise, Plant.diagnose or Plant.fit returned",
         )
     page = _gyrocal.report([(type(one).__name__, one.to_json(), one._page()) for one in given])
     with open(path, "w", encoding="utf-8", newline="\n") as file:
         file.write(page)
-
-
-def table(title: str, heads: list[str], numbers: tuple[str, ...], rows: list[list[str]]) -> dict[str, Any]:
-    """A table of plain cells, as those of the library."""
-    columns = [{"head": head, "is_number": head in numbers} for head in heads]
-    cells = [[{"text": text, "strong": False} for text in row] for row in rows]
-    return {"table": {"title": title, "columns": columns, "rows": cells}}

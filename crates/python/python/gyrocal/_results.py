@@ -2,126 +2,52 @@
 
 from __future__ import annotations
 
-import json
-import os
-from pathlib import Path
-from statistics import NormalDist
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _gyrocal
-from ._arguments import check
-from ._errors import GyrocalError, InputError, refusal
-from ._result import Fields, Result, report, table
+from ._estimates import Searched, WithCovariance
+from ._plots import coefficients
+from ._result import Fields, Result
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from ._record import Bench, Record
 
 __all__ = [
     "Calibration",
     "Characteristics",
     "Diagnosis",
-    "Fields",
     "Fleet",
     "Plan",
-    "PlantDiagnosis",
-    "Result",
     "Simulation",
-    "from_json",
-    "report",
 ]
 
 
-class _Estimates(Result):
-    """Coefficients with their standard deviations, under the names of this package and of statsmodels."""
+class _Coefficients(WithCovariance):
+    """Coefficients of a platform."""
 
     __slots__ = ()
 
-    def _estimated(self) -> list[dict[str, Any]]:
-        raise NotImplementedError
-
-    @property
-    def names(self) -> list[str]:
-        """Names of the coefficients, in the order of all arrays of them."""
-        return [one["name"] for one in self._estimated()]
-
-    @property
-    def estimates(self) -> NDArray[np.float64]:
-        """The coefficients, each in its unit."""
-        return np.array([one["estimate"] for one in self._estimated()])
-
-    @property
-    def sigmas(self) -> NDArray[np.float64]:
-        """Standard deviations of the coefficients, each in its unit."""
-        return np.array([one["sigma"] for one in self._estimated()])
-
-    @property
-    def params(self) -> NDArray[np.float64]:
-        """The same as ``estimates``."""
-        return self.estimates
-
-    @property
-    def bse(self) -> NDArray[np.float64]:
-        """The same as ``sigmas``."""
-        return self.sigmas
-
-    def conf_int(self, alpha: float = 0.05) -> NDArray[np.float64]:
-        """Confidence intervals of the coefficients, from the normal distribution.
+    def plot(self, alpha: float = 0.05, *, fig: Figure | None = None) -> Figure:
+        """Draws the coefficients with their intervals, a panel for each unit, by Matplotlib.
 
         Args:
-            alpha: Probability that an interval misses.
+            alpha: Probability that an interval misses, as :meth:`conf_int` takes it.
+            fig: A figure to draw in; a new one of pyplot if it is not given.
 
         Returns:
-            Lower and upper ends, (coefficients, 2), each in its unit.
+            The figure.
+
+        Raises:
+            ImportError: Matplotlib is not installed; it is the extra ``plot``.
         """
-        check("alpha", alpha)
-        reach = -NormalDist().inv_cdf(alpha / 2.0) * self.sigmas
-        return np.column_stack([self.estimates - reach, self.estimates + reach])
+        return coefficients(self, alpha, fig)
 
 
-class _Searched(_Estimates):
-    """A search for effects; the coefficients are those with the accepted findings in the model."""
-
-    __slots__ = ()
-
-    def _estimated(self) -> list[dict[str, Any]]:
-        found = self._fields["coefficients"]
-        best: list[dict[str, Any]] = found["nominal"] if found["extended"] is None else found["extended"]
-        return best
-
-    @property
-    def pvalues(self) -> dict[str, float]:
-        """The p-value of each finding, corrected for the search, by its effect."""
-        return {one["effect"]: one["p_value"] for one in self._fields["findings"]}
-
-    def conf_int(self, alpha: float = 0.05) -> NDArray[np.float64]:
-        """Confidence intervals of the coefficients.
-
-        With findings they are those of the result, over all members of the confidence sets, where it holds them,
-        and only of 95 %; otherwise from the normal distribution.
-
-        Args:
-            alpha: Probability that an interval misses.
-
-        Returns:
-            Lower and upper ends, (coefficients, 2), each in its unit.
-        """
-        over_set = self._fields["coefficients"]["over_set"]
-        if over_set is None:
-            return super().conf_int(alpha)
-        check("alpha", alpha)
-        if alpha != 0.05:
-            raise refusal("alpha", repr(alpha), "0.05", "the result holds intervals of 95 %")
-        return np.array([one["interval"] for one in over_set])
-
-    def _rows(self) -> list[dict[str, Any]]:
-        """One row a finding; its parameters are columns."""
-        return _finding_rows(self._fields["findings"])
-
-
-class Diagnosis(_Searched):
+class Diagnosis(Searched, _Coefficients):
     """Result of :func:`gyrocal.diagnose`.
 
     ``findings`` are the named causes, each with ``parameters`` (``estimate``, ``sigma``, ``unit``) and
@@ -167,21 +93,17 @@ class Diagnosis(_Searched):
         """
         return self._scores
 
-    @property
-    def covariance(self) -> NDArray[np.float64]:
-        """Covariance of the coefficients, (coefficients, coefficients), in products of their units."""
-        return np.array(self._fields["coefficients"]["covariance"])
-
-    def cov_params(self) -> NDArray[np.float64]:
-        """The same as ``covariance``."""
-        return self.covariance
+    def _covariance(self) -> list[list[float]]:
+        found = self._fields["coefficients"]
+        rows: list[list[float]] = [] if found is None else found["covariance"]
+        return rows
 
     def __repr__(self) -> str:
         effects = ", ".join(finding["effect"] for finding in self._fields["findings"])
         return f"<gyrocal.Diagnosis {self.verdict}{': ' + effects if effects else ''}>"
 
 
-class Calibration(_Estimates):
+class Calibration(_Coefficients):
     """Result of :func:`gyrocal.calibrate`: nine drift coefficients in deg/h, deg/h/g and deg/h/g^2.
 
     >>> import gyrocal
@@ -190,11 +112,14 @@ class Calibration(_Estimates):
     ['gyro_x.bias', 'gyro_x.g_x', 'gyro_x.g_xx']
     >>> found.params.shape, found.bse.shape, found.conf_int().shape, found.cov_params().shape
     ((9,), (9,), (9, 2), (9, 9))
+    >>> found.nobs, found.llf > 0.0
+    (4321, True)
     >>> list(found.to_pandas().columns)
     ['name', 'estimate', 'sigma', 'unit', 'determined']
     """
 
-    __slots__ = ()
+    __slots__ = ("_log_likelihood",)
+    _log_likelihood: float | None
     verdict: str
     verdict_text: str
     coefficients: list[Fields]
@@ -208,14 +133,36 @@ class Calibration(_Estimates):
     records: list[Fields]
     usable: bool
 
-    @property
-    def covariance(self) -> NDArray[np.float64]:
-        """Covariance of the coefficients, (coefficients, coefficients), in products of their units."""
-        return np.array(self._fields["covariance"])
+    def __init__(self, text: str, log_likelihood: float | None = None) -> None:
+        super().__init__(text)
+        object.__setattr__(self, "_log_likelihood", log_likelihood)
 
-    def cov_params(self) -> NDArray[np.float64]:
-        """The same as ``covariance``."""
-        return self.covariance
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self._text, self._log_likelihood)
+
+    @property
+    def llf(self) -> float:
+        """Logarithm of the likelihood of the records, over all values of the unknowns within their priors, nats.
+
+        Where fast rows are averaged it is that of their means. It is not in the JSON: a result that was read from it
+        does not have it.
+        """
+        if self._log_likelihood is None:
+            raise AttributeError(
+                "there is no `llf`: nothing was estimated, or the result was read from JSON, which does not hold it",
+                name="llf",
+                obj=self,
+            )
+        return self._log_likelihood
+
+    @property
+    def nobs(self) -> int:
+        """The same as ``rows``: the number of rows that were used, of all records."""
+        return self.rows
+
+    def _covariance(self) -> list[list[float]]:
+        rows: list[list[float]] = self._fields["covariance"]
+        return rows
 
     def _estimated(self) -> list[dict[str, Any]]:
         coefficients: list[dict[str, Any]] = self._fields["coefficients"]
@@ -290,21 +237,6 @@ class Characteristics(Result):
         figures = (one for cell in self._fields["cells"] for one in cell["characteristics"])
         return [{key: one.get(key) for key in keys} for one in figures]
 
-    def _shown(self) -> list[dict[str, Any]]:
-        heads = ["cell", "figure", "measured", "runs", "holds"]
-        words = {True: "yes", False: "no", None: ""}
-        cells = [
-            [
-                str(row["cell"]),
-                str(row["figure"]),
-                "" if row["measured"] is None else f"{row['measured']:.4g}",
-                str(row["runs"]),
-                words[row["holds"]],
-            ]
-            for row in self._rows()
-        ]
-        return [table("Operating characteristics", heads, ("measured", "runs"), cells)]
-
     def __repr__(self) -> str:
         return f"<gyrocal.Characteristics: {len(self._fields['cells'])} cells>"
 
@@ -357,50 +289,6 @@ class Fleet(Result):
         return f"<gyrocal.Fleet of {self.units} units{': ' + found if found else ''}>"
 
 
-class PlantDiagnosis(_Searched):
-    """Result of :meth:`gyrocal.Plant.diagnose`. The page of one that was pickled has no charts.
-
-    The coefficients are parameters and initial states in the units of the plant; the result has no covariance.
-
-    >>> import gyrocal
-    >>> plant = gyrocal.Plant("examples/duffing/plant.json")
-    >>> found = plant.diagnose("examples/duffing/record.csv", "examples/duffing/columns.toml")
-    >>> found.names, found.conf_int().shape
-    (['k', 'c', 'g', 'initial x', 'initial v'], (5, 2))
-    >>> list(found.pvalues)
-    ['v_rate.x^3']
-    """
-
-    __slots__ = ("_charts",)
-    _charts: _gyrocal.PlantPage | None
-    verdict: str
-    record: Fields
-    findings: list[Fields]
-    coefficients: Fields
-    open_loop: list[Fields]
-    noise: list[Fields]
-    undetermined: list[Fields]
-    gain: Fields | None
-    remainder: Fields
-    later_record: Fields | None
-
-    def __init__(self, text: str, charts: _gyrocal.PlantPage | None = None) -> None:
-        super().__init__(text)
-        object.__setattr__(self, "_charts", charts)
-
-    @property
-    def plant(self) -> str:
-        """Name of the plant."""
-        return str(self._fields["subject"]["plant"])
-
-    def _page(self) -> _gyrocal.PlantPage | None:
-        return self._charts
-
-    def __repr__(self) -> str:
-        effects = ", ".join(finding["effect"] for finding in self._fields["findings"])
-        return f"<gyrocal.PlantDiagnosis of {self.plant}, {self.verdict}{': ' + effects if effects else ''}>"
-
-
 class Simulation(Result):
     """Result of :func:`gyrocal.simulate`: the truth, and the record and bench description made of it.
 
@@ -443,7 +331,7 @@ class Simulation(Result):
         """One row a true coefficient."""
         return list(self.to_dict()["coefficients"])
 
-    def _shown(self) -> list[dict[str, Any]]:
+    def _words(self) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
         hidden = [
             f"{one['effect']} ("
             + ", ".join(f"{p['name']} {p['value']:g} {p['unit']}" for p in one["parameters"])
@@ -455,81 +343,7 @@ class Simulation(Result):
         ]
         if hidden:
             blocks.append({"list": {"title": "Hidden effects", "entries": hidden}})
-        return blocks
+        return blocks, []
 
     def __repr__(self) -> str:
         return f"<gyrocal.Simulation: {self.rows} rows, seed {self.manifest.seed}>"
-
-
-def _finding_rows(findings: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """One row a finding; the parameters are columns."""
-    keys = ("effect", "name", "kind", "formula", "z", "p_value", "coverage", "gain_nats", "accepted")
-    rows = []
-    for finding in findings:
-        row = {key: finding[key] for key in keys if key in finding}
-        row["alternatives"] = [other["effect"] for other in finding["alternatives"]]
-        for parameter in finding["parameters"]:
-            row[parameter["name"]] = parameter["estimate"]
-            row[parameter["name"] + "_sigma"] = parameter["sigma"]
-            row[parameter["name"] + "_unit"] = parameter["unit"]
-        rows.append(row)
-    return rows
-
-
-#: A key that no other result has, and the class.
-_CLASSES: dict[str, type[Result]] = {
-    "verdict_text": Calibration,
-    "proposals": Plan,
-    "cells": Characteristics,
-    "recurring": Fleet,
-}
-
-
-def from_json(text_or_path: str | os.PathLike[str]) -> Result:
-    """Reads a result that ``to_json`` gave, or that the command wrote with ``--json``.
-
-    Args:
-        text_or_path: The JSON itself, or the path of a file of it.
-
-    Returns:
-        A :class:`Calibration`, :class:`Characteristics`, :class:`Diagnosis`, :class:`Fleet`, :class:`Plan` or
-        :class:`PlantDiagnosis`, as the JSON is. A diagnosis has no ``scores``, and the page of a plant no charts.
-
-    Raises:
-        InputError: The file cannot be read, or holds no such result.
-
-    >>> import gyrocal
-    >>> text = gyrocal.calibrate("examples/data/three_days.csv", "examples/data/three_days.bench.toml").to_json()
-    >>> gyrocal.from_json(text)
-    <gyrocal.Calibration consistent: 9 coefficients>
-    """
-    if not isinstance(text_or_path, (str, os.PathLike)):
-        raise refusal("text_or_path", f"a {type(text_or_path).__name__}", "a text of JSON or a path")
-    name, text = "<text>", text_or_path
-    if isinstance(text, os.PathLike) or not text.lstrip().startswith("{"):
-        name = os.fspath(text)
-        try:
-            text = Path(name).read_text(encoding="utf-8")
-        except (OSError, ValueError) as error:
-            raise InputError(f"{name}: cannot be read: {error}", file=name) from error
-    try:
-        fields = json.loads(text)
-    except ValueError as error:
-        raise InputError(f"{name}: found no JSON: {error}", file=name) from error
-    keys = fields if isinstance(fields, dict) else {}
-    kinds = [kind for key, kind in _CLASSES.items() if key in keys]
-    if {"findings", "subject"} <= set(keys):
-        kinds = [PlantDiagnosis if "plant" in (keys.get("subject") or "") else Diagnosis]
-    if not kinds:
-        raise refusal(
-            name, "JSON of another kind",
-            "a result of calibrate, characterise, diagnose, plan, fleet.summarise or Plant.diagnose",
-            "a simulation is made again from its scenario and seed; json.loads reads any other",
-        )
-    result = kinds[0](text)
-    try:
-        # What is no whole result is told here, and not where it is shown.
-        result._shown()
-    except (GyrocalError, KeyError, TypeError) as error:
-        raise refusal(name, f"no whole {kinds[0].__name__}: {error}", "one that this version wrote") from error
-    return result

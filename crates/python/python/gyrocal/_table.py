@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     import polars as pl
     import pyarrow as pa
 
-__all__ = ["Table"]
+__all__ = ["Table", "needed"]
 
 
 class Table:
@@ -24,23 +24,19 @@ class Table:
 
     def to_pandas(self) -> pd.DataFrame:
         """The rows as a frame of pandas; of a result those of its main table."""
-        with _needed("pandas", "pandas"):
+        with needed("pandas", "pandas"):
             import pandas as pd
         return pd.DataFrame(self._columns())
 
-    def to_dataframe(self) -> pd.DataFrame:
-        """The same as :meth:`to_pandas`."""
-        return self.to_pandas()
-
     def to_polars(self) -> pl.DataFrame:
         """The rows as a frame of Polars."""
-        with _needed("Polars", "polars"):
+        with needed("Polars", "polars"):
             import polars as pl
         return pl.DataFrame(self._columns(), strict=False)
 
     def to_arrow(self) -> pa.Table:
         """The rows as a table of PyArrow."""
-        with _needed("PyArrow", "pyarrow"):
+        with needed("PyArrow", "pyarrow"):
             import pyarrow as pa
         return pa.table(self._columns())
 
@@ -50,8 +46,11 @@ class Table:
 
 
 @contextmanager
-def _needed(name: str, package: str) -> Iterator[None]:
+def needed(name: str, package: str, install: str | None = None) -> Iterator[None]:
+    """Tells how an optional package is installed, where it cannot be imported; `install` if not by its own name."""
     try:
         yield
     except ImportError as error:
-        raise ImportError(f"{name} is not installed: python -m pip install {package}", name=package) from error
+        raise ImportError(
+            f"{name} is not installed: python -m pip install {install or package}", name=package
+        ) from error
