@@ -4,11 +4,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 use gyrocal_instruments::{
-    AllanReport, AllanSettings, Description, InstrumentError, Log, ResultFile, allan_columns,
+    AllanReport, AllanSettings, Description, InstrumentError, Log, ResultFile, allan_file,
     allan_log,
 };
 use gyrocal_pages::of_allan;
-use gyrocal_record::SourceText;
 use gyrocal_statistics::allan::AllanEstimator;
 
 use crate::measured::unusable;
@@ -22,10 +21,11 @@ use crate::{Failure, Reply};
 /// Each column is a rate sampled at equal intervals. Confidence intervals of the deviations are those of
 /// NIST SP 1065, with the degrees of freedom of the dominant noise type at each averaging time. The
 /// coefficients are fitted to the samples by the likelihood of their cosine transform, beside tones and a
-/// filter, with 95 % intervals and a test of fit.
+/// filter, with 95 % intervals and a test of fit. The result for programs has the fitted curve and its parts for a
+/// plot.
 #[derive(Debug, Args)]
 pub(crate) struct AllanArguments {
-    /// The log (CSV) with a header row, or as its description says.
+    /// The log: CSV with a header row, MATLAB, Parquet or MCAP, or as its description says.
     log: PathBuf,
     /// Description of the log (TOML): its three gyros on its clock, in deg/h; docs/measured-data.md has
     /// every key.
@@ -64,9 +64,6 @@ pub(crate) struct AllanArguments {
         value_parser = one_of(ESTIMATORS)
     )]
     estimator: AllanEstimator,
-    /// Write the result for programs (JSON), with the fitted curve and its parts for a plot.
-    #[arg(long, value_name = "OUT.json")]
-    json: Option<PathBuf>,
     #[command(flatten)]
     views: Views,
 }
@@ -94,15 +91,12 @@ const ESTIMATORS: &[Choice<AllanEstimator>] = &[
 pub(crate) fn run(arguments: &AllanArguments) -> Result<Reply, Failure> {
     let mut inputs = vec![&*arguments.log];
     inputs.extend(arguments.log_description.as_deref());
-    let json = arguments.json.as_deref();
-    arguments.views.check(&inputs, json, &[])?;
+    arguments.views.check(&inputs, &[])?;
     let (report, clock) = analysed(arguments).map_err(|error| unusable(&arguments.log, error))?;
     let manifest = manifest("", 0, &inputs)?;
     let part = of_allan(&manifest, &report, clock.as_deref());
-    let mut answer = Reply::of_part(&part);
-    arguments.views.stage(&arguments.log, part, &mut answer)?;
-    answer.write_json(json, &ResultFile::new(manifest, report))?;
-    Ok(answer)
+    let result = ResultFile::new(manifest, report);
+    arguments.views.answered(&arguments.log, part, &result)
 }
 
 /// Analysed columns, and what there is to tell of the clock.
@@ -121,10 +115,9 @@ fn analysed(arguments: &AllanArguments) -> Result<(AllanReport, Option<String>),
     };
     let Some(path) = &arguments.log_description else {
         let names: Vec<&str> = arguments.columns.iter().map(String::as_str).collect();
-        let source = SourceText::read(&arguments.log)?;
         // Required without a description.
         let settings = settings(arguments.rate_hz.unwrap_or(1.0), arguments.scale);
-        let columns = allan_columns(&source, &names, &settings)?;
+        let columns = allan_file(&arguments.log, &names, &settings)?;
         return Ok((report(&arguments.unit, columns), None));
     };
     let log = Log::read(&arguments.log, &Description::read(path)?)?;

@@ -14,7 +14,7 @@ use gyrocal_diagnosis::{
 };
 use gyrocal_pages::of_calibration;
 use gyrocal_record::{
-    CalibrationMethod, CalibrationReport, FittedEffects, InputRole, printable_path,
+    CalibrationMethod, CalibrationReport, FittedEffects, InputRole, Manifest, printable_path,
 };
 use miette::miette;
 
@@ -23,7 +23,6 @@ use crate::outputs::manifest_of;
 use crate::page::{self, Views};
 use crate::progress::Progress;
 use crate::records::{Given, with_role};
-use crate::reply::WRONG_SET_UP;
 use crate::{Failure, Reply, exit, gyro_axes};
 pub use failed::NotCalibrated;
 use failed::WrongSetup;
@@ -45,9 +44,6 @@ use inputs::Measurement;
 pub(crate) struct CalibrateArguments {
     #[command(flatten)]
     given: Given,
-    /// Write the result for programs (JSON).
-    #[arg(long, value_name = "OUT.json")]
-    json: Option<PathBuf>,
     /// Write the coefficients as a table: CSV, or Parquet if the name ends in .parquet.
     #[arg(long, value_name = "OUT.csv")]
     coefficients: Option<PathBuf>,
@@ -170,12 +166,13 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Reply, Failure> {
     arguments.check()?;
     let inputs = arguments.inputs();
     let paths: Vec<&Path> = inputs.iter().map(|(_, path)| *path).collect();
-    let (json, table) = (arguments.json.as_deref(), arguments.coefficients.as_deref());
-    let tables = [("--coefficients", table)];
-    arguments.views.check(&paths, json, &tables)?;
+    let (views, table) = (&arguments.views, arguments.coefficients.as_deref());
+    views.check(&paths, &[("--coefficients", table)])?;
     let measurements = inputs::read(arguments)?;
+    let benches = measurements.iter().map(|one| &one.bench);
+    let manifest = manifest_of(MODEL_HASH, 0, &inputs, benches)?;
     if measurements.iter().any(|measurement| measurement.stops) {
-        return Err(stopped(arguments, &measurements, &inputs)?.into());
+        return Err(stopped(arguments, &measurements, manifest)?.into());
     }
     let rows = measurements.iter().map(|m| m.record.len()).sum();
     tracing::info!(records = measurements.len(), rows, "read");
@@ -198,12 +195,7 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Reply, Failure> {
         records: measurements.iter().map(Measurement::calibrated).collect(),
         axes: &gyro_axes,
         with_effects,
-        manifest: manifest_of(
-            MODEL_HASH,
-            0,
-            &inputs,
-            measurements.iter().map(|one| &one.bench),
-        )?,
+        manifest,
     };
     let report = calibrate_and_diagnose(request, |step| match step {
         CalibrationStep::Row(row) => progress.reach(row),
@@ -226,15 +218,15 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Reply, Failure> {
         arguments.given.first(),
         of_calibration(&report, &[]),
     )?);
-    if arguments.views.are_asked() {
-        let (record, views) = (arguments.given.first(), &arguments.views);
+    if views.are_asked() {
+        let record = arguments.given.first();
         let part = over_time::part(record, &report, &measurements, (&gyro_axes, &options))?;
         views.stage(record, part, &mut answer)?;
     }
     answer.write(table, "the coefficients", |path| {
         Ok(report.coefficient_table().content(path)?)
     })?;
-    answer.write_json(json, &report)?;
+    answer.write_json(views.json(), &report)?;
     // Coefficients that mean nothing are no result.
     if !report.usable {
         answer.exit_code = exit::FAILED;
@@ -246,24 +238,16 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<Reply, Failure> {
 fn stopped(
     arguments: &CalibrateArguments,
     measurements: &[Measurement],
-    inputs: &[(InputRole, &Path)],
+    manifest: Manifest,
 ) -> Result<WrongSetup, Failure> {
     let problems = measurements.iter().flat_map(|one| &one.setup);
-    let manifest = manifest_of(
-        MODEL_HASH,
-        0,
-        inputs,
-        measurements.iter().map(|one| &one.bench),
-    )?;
     let problems = problems.cloned().collect();
     let report = CalibrationReport::of_wrong_setup(manifest, arguments.method(), problems);
     let mut written = Reply::default();
     let views = &arguments.views;
-    views.leave_out_figures(WRONG_SET_UP, &mut written)?;
-    written.leave_out(arguments.coefficients.as_deref(), WRONG_SET_UP);
     let part = page::part(arguments.given.first(), of_calibration(&report, &[]))?;
-    page::write(views.report(), vec![part], &mut written)?;
-    written.write_json(arguments.json.as_deref(), &report)?;
+    views.leave_out(part, [&arguments.coefficients], &mut written)?;
+    written.write_json(views.json(), &report)?;
     let written = written.committed()?.written;
     Ok(WrongSetup::new(&report, &written))
 }

@@ -10,7 +10,7 @@ use gyrocal::generated::MODEL_HASH;
 use gyrocal_answer::{Answer, Verdict};
 use gyrocal_calibration::CalibrationError;
 use gyrocal_diagnosis::{
-    DiagnoseOptions, Diagnosis, DiagnosisError, FILTER_EFFECT, Gate, TestedFilter, diagnose_watched,
+    DiagnoseOptions, DiagnosisError, FILTER_EFFECT, Gate, TestedFilter, diagnose_watched,
 };
 use gyrocal_pages::{of_diagnosis, of_result};
 use gyrocal_record::{Bench, InputRole};
@@ -20,7 +20,6 @@ use crate::outputs::{manifest_of, refuse_itself, write_answer};
 use crate::page::{self, Views};
 use crate::progress::Progress;
 use crate::records::{Given, with_role};
-use crate::reply::WRONG_SET_UP;
 use crate::{Failure, Reply, exit, gyro_axes};
 pub use failed::NotDiagnosed;
 
@@ -34,9 +33,6 @@ pub use failed::NotDiagnosed;
 pub(crate) struct DiagnoseArguments {
     #[command(flatten)]
     given: Given,
-    /// The result to write for programs (JSON).
-    #[arg(long, value_name = "OUT.json")]
-    json: Option<PathBuf>,
     /// Write the findings as a table: CSV, or Parquet if the name ends in .parquet.
     #[arg(long, value_name = "OUT.csv")]
     findings: Option<PathBuf>,
@@ -121,6 +117,7 @@ pub(crate) fn run(arguments: &DiagnoseArguments) -> Result<Reply, Failure> {
     tracing::info!(rows, "read");
     let options = arguments.options();
     let failed = |source| NotDiagnosed::new(record, &bench, source);
+    let stop = |result| stopped(arguments, result, &inputs, &bench);
     if arguments.filter.is_some() && bench.initial_angles_deg.is_none() {
         return Err(failed(CalibrationError::NoAttitude.into()).into());
     }
@@ -131,10 +128,7 @@ pub(crate) fn run(arguments: &DiagnoseArguments) -> Result<Reply, Failure> {
     let checked = gate(&file, &bench)?.with_gyro_axes(axes);
     let mut diagnosis =
         match diagnose_watched(checked, &bench, &options, |stage| progress.at(stage)) {
-            Err(DiagnosisError::Setup { result }) => {
-                drop(progress);
-                return stopped(arguments, *result, &inputs, &bench);
-            }
+            Err(DiagnosisError::Setup { result }) => return stop(*result),
             found => found.map_err(failed)?,
         };
     diagnosis.result.manifest = manifest_of(MODEL_HASH, options.seed, &inputs, [&bench])?;
@@ -144,16 +138,19 @@ pub(crate) fn run(arguments: &DiagnoseArguments) -> Result<Reply, Failure> {
         let axes = gyro_axes::read(axes, [later.record()])?.pop();
         let checked = gate(later, later_bench)?.with_gyro_axes(axes);
         match diagnosis.validate_gated(checked, later_bench, &options) {
-            Err(DiagnosisError::Setup { result }) => {
-                drop(progress);
-                return stopped(arguments, *result, &inputs, &bench);
-            }
+            Err(DiagnosisError::Setup { result }) => return stop(*result),
             validated => validated.map_err(failed)?,
         }
     }
     drop(progress);
-    tracing::info!(verdict = ?diagnosis.result.verdict, "diagnosed");
-    answer(arguments, record, &diagnosis)
+    let result = &diagnosis.result;
+    tracing::info!(verdict = ?result.verdict, "diagnosed");
+    let mut answer = Reply::of_answer(result);
+    if arguments.views.are_asked() {
+        let part = page::part(record, of_diagnosis(&diagnosis))?;
+        arguments.views.stage(record, part, &mut answer)?;
+    }
+    finished(arguments, result, answer)
 }
 
 /// The files that are read. Arguments that contradict each other are refused before that.
@@ -172,8 +169,7 @@ fn checked_inputs(arguments: &DiagnoseArguments) -> Result<Vec<(InputRole, &Path
         ("--findings", arguments.findings.as_deref()),
         ("--coefficients", arguments.coefficients.as_deref()),
     ];
-    let json = arguments.json.as_deref();
-    arguments.views.check(&inputs, json, &tables)?;
+    arguments.views.check(&inputs, &tables)?;
     let later = arguments.validate.as_deref();
     refuse_itself("--validate", later, &arguments.given.records)?;
     if arguments.effects.iter().any(|id| id == FILTER_EFFECT) {
@@ -194,46 +190,25 @@ fn stopped(
 ) -> Result<Reply, Failure> {
     result.manifest = manifest_of(MODEL_HASH, result.manifest.seed, inputs, [bench])?;
     let mut answer = Reply::of_answer(&result);
-    arguments
-        .views
-        .leave_out_figures(WRONG_SET_UP, &mut answer)?;
-    answer.leave_out(arguments.findings.as_deref(), WRONG_SET_UP);
-    answer.leave_out(arguments.coefficients.as_deref(), WRONG_SET_UP);
-    let parts = vec![of_result(&result)];
-    page::write(arguments.views.report(), parts, &mut answer)?;
-    write_answer(arguments.json.as_deref(), &result, &mut answer)?;
-    if arguments.exit_code {
-        answer.exit_code = exit::SETUP;
-    }
-    Ok(answer)
+    let (findings, coefficients) = (&arguments.findings, &arguments.coefficients);
+    let (part, tables) = (of_result(&result), [findings, coefficients]);
+    arguments.views.leave_out(part, tables, &mut answer)?;
+    finished(arguments, &result, answer)
 }
 
-/// Writes all outputs, and lays out the words.
-fn answer(
-    arguments: &DiagnoseArguments,
-    record: &Path,
-    diagnosis: &Diagnosis<'_>,
-) -> Result<Reply, Failure> {
-    let result = &diagnosis.result;
-    let mut answer = Reply::of_answer(result);
-    if arguments.views.are_asked() {
-        let part = page::part(record, of_diagnosis(diagnosis))?;
-        arguments.views.stage(record, part, &mut answer)?;
-    }
-    finished(arguments, result, answer)
-}
-
-/// Adds the files for programs that are asked for, and the exit code.
+/// Adds the files for programs that are asked for, and the exit code; of a wrong set-up there are no tables.
 fn finished(
     arguments: &DiagnoseArguments,
     result: &Answer,
     mut answer: Reply,
 ) -> Result<Reply, Failure> {
-    write_answer(arguments.json.as_deref(), result, &mut answer)?;
-    answer.write(arguments.findings.as_deref(), "the findings", |path| {
+    write_answer(arguments.views.json(), result, &mut answer)?;
+    let tables = [&arguments.findings, &arguments.coefficients];
+    let has_tables = result.verdict != Verdict::Setup;
+    let [findings, coefficients] = tables.map(|path| path.as_deref().filter(|_| has_tables));
+    answer.write(findings, "the findings", |path| {
         Ok(result.finding_table().content(path)?)
     })?;
-    let coefficients = arguments.coefficients.as_deref();
     answer.write(coefficients, "the coefficients", |path| {
         Ok(result.coefficient_table().content(path)?)
     })?;

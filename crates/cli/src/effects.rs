@@ -5,7 +5,7 @@ use gyrocal::effect::Enters;
 use gyrocal::{EFFECTS, Effect};
 use gyrocal_document::{Screen, Standing, Table};
 use gyrocal_record::{any_of, nearest_names, printable_line};
-use gyrocal_words::{explained, tested, typical_size};
+use gyrocal_words::{explained, joined, tested, typical_size};
 use miette::miette;
 
 use crate::Failure;
@@ -35,14 +35,10 @@ pub(crate) fn run(arguments: &EffectsArguments) -> Result<Reply, Failure> {
     let family: Vec<&Effect> = family.collect();
     if let Some(first) = family.first() {
         let mut screen = explained(first);
-        let ids: Vec<&str> = family.iter().map(|effect| effect.id).collect();
-        screen.facts.insert(
-            0,
-            gyrocal_document::Fact {
-                label: "family".to_owned(),
-                words: format!("{}: {}; below: {}", first.family, ids.join(", "), first.id),
-            },
-        );
+        let ids = joined(family.iter().map(|effect| effect.id), ", ");
+        let words = format!("{}: {ids}; below: {}", first.family, first.id);
+        screen.fact("family", words);
+        screen.facts.rotate_right(1);
         return Ok(Reply::of(screen, listed(family.into_iter())));
     }
     let mut known: Vec<&str> = EFFECTS.iter().map(|effect| effect.id).collect();

@@ -132,10 +132,8 @@ fn summary(arguments: &ExtendArguments, extension: &ModelExtension) -> Screen {
         screen.fact("start value", words);
     }
     let shapes = model.shapes.iter();
-    screen.each(
-        "built in",
-        shapes.map(|(id, value)| format!("{id} is {value}")),
-    );
+    let shapes = shapes.map(|(id, value)| format!("{id} is {value}"));
+    screen.each("built in", shapes);
     let known = known_effects();
     let own = known.iter();
     let own = own.filter(|one| model.effects.iter().any(|id| id == one.id));
@@ -151,10 +149,8 @@ fn summary(arguments: &ExtendArguments, extension: &ModelExtension) -> Screen {
         screen.fact("may also be", words);
     }
     let left_out = extension.left_out.iter();
-    screen.each(
-        "left out",
-        left_out.map(|one| format!("{} {}", one.effect, one.why)),
-    );
+    let left_out = left_out.map(|one| format!("{} {}", one.effect, one.why));
+    screen.each("left out", left_out);
     let words = "derive the filter in your package: docs/extending.md";
     screen.fact("what to do", words);
     screen

@@ -64,27 +64,13 @@ The effects it knows         gyrocal effects
 
 /// The definition of the command line with examples, groups and exit codes.
 pub(crate) fn completed(command: Command) -> Command {
-    let names: Vec<String> = command
-        .get_subcommands()
-        .map(|subcommand| subcommand.get_name().to_owned())
-        .collect();
     let command = command.after_help(exit::HELP);
-    names.into_iter().fold(command, |command, name| {
-        command.mut_subcommand(&name, |subcommand| {
-            with_examples(grouped(subcommand), &name)
-        })
-    })
+    command.mut_subcommands(|subcommand| with_examples(grouped(subcommand)))
 }
 
 /// Options that name files, under headings of their own.
 fn grouped(command: Command) -> Command {
-    let nested: Vec<String> = command
-        .get_subcommands()
-        .map(|subcommand| subcommand.get_name().to_owned())
-        .collect();
-    let command = nested.into_iter().fold(command, |command, name| {
-        command.mut_subcommand(&name, grouped)
-    });
+    let command = command.mut_subcommands(grouped);
     command.mut_args(|argument| {
         let id = argument.get_id().as_str().to_owned();
         match () {
@@ -96,10 +82,11 @@ fn grouped(command: Command) -> Command {
     })
 }
 
-fn with_examples(command: Command, name: &str) -> Command {
+fn with_examples(command: Command) -> Command {
+    let name = Some(command.get_name());
     let lines: Vec<&str> = EXAMPLES.lines().collect();
     let own = lines.chunks(2);
-    let own = own.filter(|pair| pair.last().and_then(|line| line.split(' ').nth(1)) == Some(name));
+    let own = own.filter(|pair| pair.last().and_then(|line| line.split(' ').nth(1)) == name);
     let own: String = own.flatten().map(|line| format!("  {line}\n")).collect();
     match &*own {
         "" => command,

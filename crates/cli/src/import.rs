@@ -121,10 +121,8 @@ fn strapdown(arguments: &StrapdownArguments) -> Result<Reply, Failure> {
     answer.write(axes, "the axes of the gyros", |_| {
         Ok(axes_csv(&imported.record, &imported.platform_q_body))
     })?;
-    if arguments.json.is_some() {
-        let result = ResultFile::new(manifest("", 0, &inputs)?, report);
-        answer.write_json(arguments.json.as_deref(), &result)?;
-    }
+    let result = ResultFile::new(manifest("", 0, &inputs)?, report);
+    answer.write_json(arguments.json.as_deref(), &result)?;
     Ok(answer)
 }
 
@@ -158,15 +156,11 @@ fn summary(arguments: &StrapdownArguments, report: &ImportReport) -> String {
     let _ = writeln!(
         text,
         "Standard deviation of the samples of the median row: {:.1} deg/h and {:.2e} g. Disturbed \
-         rows (more than\n{} times that): {disturbed:.0} s, {}",
+         rows (more than\n{} times that): {disturbed:.0} s, {}:",
         report.gyro_scatter_deg_per_h,
         report.accel_scatter_g,
         arguments.quiet_factor,
-        if arguments.keep_disturbed {
-            "kept:"
-        } else {
-            "written as missing:"
-        },
+        of_disturbed(arguments),
     );
     let windows: Vec<String> = report
         .disturbed_s
@@ -193,11 +187,22 @@ fn summary(arguments: &StrapdownArguments, report: &ImportReport) -> String {
     text
 }
 
+/// What is done with disturbed rows.
+fn of_disturbed(arguments: &StrapdownArguments) -> &'static str {
+    match arguments.keep_disturbed {
+        true => "kept",
+        false => "written as missing",
+    }
+}
+
 /// Length of the disturbed windows together.
 fn disturbed_s(report: &ImportReport) -> f64 {
     let windows = report.disturbed_s.iter();
     windows.map(|[from_s, to_s]| to_s - from_s).sum()
 }
+
+/// What to check where a rate is far from Earth rate.
+const TO_CHECK: &str = "check latitude, units and axes in the log description, and the gyros";
 
 /// Threshold of a difference from Earth rate beyond noise, in standard deviations.
 const FAR_SIGMAS: f64 = 6.0;
@@ -237,12 +242,7 @@ fn rates(text: &mut String, report: &ImportReport) {
             rate - expected
         );
         if is_far([rate, sigma], expected) {
-            let _ = writeln!(
-                text,
-                "  {:<10} far off: check latitude, units and axes in the log description, and the \
-                 gyros",
-                ""
-            );
+            let _ = writeln!(text, "  {:<10} far off: {TO_CHECK}", "");
         }
     }
     let _ = writeln!(

@@ -41,9 +41,6 @@ pub(crate) struct MonteCarloArguments {
     /// Use this many threads instead of one for each core.
     #[arg(long, value_name = "N")]
     threads: Option<NonZeroUsize>,
-    /// Write the result for programs (JSON).
-    #[arg(long, value_name = "OUT.json")]
-    json: Option<PathBuf>,
     #[command(flatten)]
     views: Views,
     /// Draw latitude (up to 80 deg), coefficients, initial attitude and duration (one to fourteen
@@ -61,14 +58,11 @@ const MAX_SEEDS: u64 = 10_000_000;
 
 /// Runs the command; returns the text for stdout.
 pub(crate) fn run(arguments: &MonteCarloArguments) -> Result<Reply, Failure> {
-    let (json, views) = (arguments.json.as_deref(), &arguments.views);
-    let kept = [
-        ("--results", arguments.results.as_deref()),
-        ("--json", json),
-    ];
-    views.refuse_overlap(&[&arguments.scenario], kept)?;
+    let views = &arguments.views;
+    let results = arguments.results.as_deref();
+    views.refuse_overlap(&[&arguments.scenario], &[("--results", results)])?;
     // Checked before hours of work: the folders must exist.
-    views.check(&[&arguments.scenario], json, &[])?;
+    views.check(&[&arguments.scenario], &[])?;
     let scenario = Scenario::read(&arguments.scenario)?;
     let seed = scenario.seed;
     let outcome = outcome(arguments, scenario)?;
@@ -94,7 +88,7 @@ pub(crate) fn run(arguments: &MonteCarloArguments) -> Result<Reply, Failure> {
         answer.wrote(path, "results of all runs");
     }
     views.stage(&arguments.scenario, part, &mut answer)?;
-    answer.write_json(json, &report)?;
+    answer.write_json(views.json(), &report)?;
     Ok(answer)
 }
 

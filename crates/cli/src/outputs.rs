@@ -85,33 +85,10 @@ pub(crate) fn refuse_overlap(
     Ok(())
 }
 
-/// Refuses, before the computation, outputs that would be lost after it.
-pub(crate) fn check(
-    inputs: &[&Path],
-    json: Option<&Path>,
-    figures: Option<&Path>,
-) -> Result<(), Failure> {
-    refuse_overlap(inputs, &[("--figures", figures), ("--json", json)])?;
-    if let (Some(json), Some(figures)) = (json, figures)
-        && file_behind(json).parent() == Some(&file_behind(figures))
-        && is_picture(json)
-    {
-        return Err(Failure::Usage(format!(
-            "--json {} is among the pictures of --figures {}",
-            printable_path(json),
-            printable_path(figures)
-        )));
-    }
-    if let Some(figures) = figures {
-        make_folder("--figures ", figures, &mut Outputs::new())?;
-    }
-    refuse_unwritable(&[json], figures)
-}
-
-/// Whether a file has the name of a picture.
-fn is_picture(path: &Path) -> bool {
-    path.extension()
-        .is_some_and(|form| form == "svg" || form == "png")
+/// Refuses, before the computation, a result for programs that would be lost after it.
+pub(crate) fn check(inputs: &[&Path], json: Option<&Path>) -> Result<(), Failure> {
+    refuse_overlap(inputs, &[("--json", json)])?;
+    refuse_unwritable(&[json], None)
 }
 
 /// Refuses outputs that cannot be written; `made` is the folder that the command creates for others.

@@ -31,6 +31,18 @@ const WIDTH_PX: u32 = 1200;
 /// A picture with the name of its files.
 pub(crate) type Named = (String, Box<dyn Picture>);
 
+/// Whether a file has the name of a picture.
+pub(crate) fn is_picture(path: &Path) -> bool {
+    path.extension()
+        .is_some_and(|form| form == "svg" || form == "png")
+}
+
+/// Whether a folder holds pictures.
+pub(crate) fn are_in(folder: &Path) -> bool {
+    let files = folder.read_dir().into_iter().flatten().flatten();
+    files.map(|file| file.path()).any(|path| is_picture(&path))
+}
+
 /// Stages the pictures of an input, to be committed with the other outputs; returns what there is in
 /// the folder, for stdout.
 pub(crate) fn stage(

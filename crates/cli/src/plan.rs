@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use gyrocal::generated::MODEL_HASH;
 use gyrocal_calibration::Run;
-use gyrocal_design::{Aim, PlanOptions, plan};
+use gyrocal_design::{Aim, Goal, PlanOptions, plan};
 use gyrocal_pages::of_plan;
 use gyrocal_record::InputRole;
 
@@ -20,7 +20,7 @@ use crate::progress::Progress;
 use crate::records::{Given, with_role};
 use crate::{Failure, Reply};
 pub use failed::NotPlanned;
-use options::{durations_s, goal, limit, limits, refuse_repeated, wished_sigma};
+use options::{durations_s, limit, limits, refuse_repeated, wished_sigma};
 
 /// Find the attitude and duration of the most informative next run.
 ///
@@ -36,9 +36,6 @@ pub(crate) struct PlanArguments {
     /// Result of `gyrocal diagnose --json` for these records; without it they are diagnosed.
     #[arg(long, value_name = "DIAGNOSIS.json", conflicts_with_all = ["effects", "false_alarm"])]
     diagnosis: Option<PathBuf>,
-    /// Write the result for programs (JSON).
-    #[arg(long, value_name = "OUT.json")]
-    json: Option<PathBuf>,
     #[command(flatten)]
     views: Views,
     /// Durations of the next run, h; default: that of the last record.
@@ -102,8 +99,7 @@ pub(crate) fn run(arguments: &PlanArguments) -> Result<Reply, Failure> {
     let read = arguments.inputs();
     let inputs: Vec<&Path> = read.iter().map(|(_, path)| *path).collect();
     refuse_repeated(&arguments.limits)?;
-    let json = arguments.json.as_deref();
-    arguments.views.check(&inputs, json, &[])?;
+    arguments.views.check(&inputs, &[])?;
     let (files, benches) = arguments.given.read()?;
     let rows = files.iter().map(|file| file.record().len()).sum();
     tracing::info!(rows, records = files.len(), "read");
@@ -119,7 +115,10 @@ pub(crate) fn run(arguments: &PlanArguments) -> Result<Reply, Failure> {
         durations_s: durations_s(&arguments.hours),
         limits: limits(&arguments.limits, &known.bench),
         aim: arguments.aim,
-        goal: goal(arguments),
+        goal: Goal {
+            sigmas: arguments.sigma.clone(),
+            one_name: arguments.one_name,
+        },
         ..PlanOptions::default()
     };
     let mut planned = plan(&known.fitted, &run, &known.named, &options)
@@ -128,10 +127,6 @@ pub(crate) fn run(arguments: &PlanArguments) -> Result<Reply, Failure> {
     planned.record = known.summary;
     planned.setup.clone_from(&known.setup);
     planned.manifest = manifest_of(MODEL_HASH, options.seed, &read, &benches)?;
-    let part = of_plan(&planned);
-    let mut answer = Reply::of_part(&part);
-    let views = &arguments.views;
-    views.stage(arguments.given.first(), part, &mut answer)?;
-    answer.write_json(json, &planned)?;
-    Ok(answer)
+    let (part, views) = (of_plan(&planned), &arguments.views);
+    views.answered(arguments.given.first(), part, &planned)
 }

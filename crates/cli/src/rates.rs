@@ -45,7 +45,7 @@ pub(crate) fn run(arguments: &RatesArguments) -> Result<Reply, Failure> {
     let mut inputs: Vec<&Path> = arguments.logs.iter().map(|log| &**log).collect();
     inputs.push(&arguments.log_description);
     let json = arguments.json.as_deref();
-    outputs::check(&inputs, json, None)?;
+    outputs::check(&inputs, json)?;
     let (report, notes) = work(arguments)?;
     let manifest = manifest("", 0, &inputs)?;
     let mut answer = Reply::of_part(&of_rates(&manifest, &report, &notes));

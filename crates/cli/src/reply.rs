@@ -14,9 +14,6 @@ use crate::{Failure, layout, terminal};
 /// What the file of `--json` holds.
 pub(crate) const RESULT: &str = "the result for programs";
 
-/// Why there is an answer without tables and pictures.
-pub(crate) const WRONG_SET_UP: &str = "as the set-up is wrong";
-
 /// Result of a command: what it says, and the files that it writes.
 #[derive(Debug, Default)]
 pub(crate) struct Reply {
@@ -90,8 +87,7 @@ impl Reply {
     }
 
     /// Has nothing for a file that is asked for: tells it, and removes what an earlier run wrote there.
-    pub(crate) fn leave_out(&mut self, path: Option<&Path>, why: &str) {
-        let Some(path) = path else { return };
+    pub(crate) fn leave_out(&mut self, path: &Path, why: &str) {
         let removed = match path.is_file() {
             true => "; the earlier file is removed",
             false => "",

@@ -114,10 +114,7 @@ pub(crate) fn run(arguments: &ReportArguments) -> Result<Reply, Failure> {
         let sections = sections.chain(found.spread.as_ref().map(of_spread));
         let details = layout::layout(&read_sections(&sections.collect::<Vec<_>>()));
         answer = Reply::of(uncertainty_screen(&found), details);
-        if let Some(path) = json {
-            answer.outputs.stage_json(path, &found)?;
-            answer.wrote(path, "uncertainty budgets");
-        }
+        answer.write_json(json, &found)?;
     }
     page::write(Some(&arguments.out), parts, &mut answer)?;
     Ok(answer)

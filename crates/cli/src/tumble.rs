@@ -52,17 +52,14 @@ pub(crate) struct TumbleArguments {
     left_out: u32,
     #[command(flatten)]
     views: Views,
-    /// Write the result for programs (JSON).
-    #[arg(long, value_name = "OUT.json")]
-    json: Option<PathBuf>,
 }
 
 /// Runs the command; returns the text for stdout.
 pub(crate) fn run(arguments: &TumbleArguments) -> Result<Reply, Failure> {
     let mut inputs: Vec<&Path> = arguments.logs.iter().map(|log| &**log).collect();
     inputs.push(&arguments.log_description);
-    let json = arguments.json.as_deref();
-    arguments.views.check(&inputs, json, &[])?;
+    let views = &arguments.views;
+    views.check(&inputs, &[])?;
     if arguments.logs.len() > 1 && !arguments.stop.is_empty() {
         return Err(Failure::Usage(
             "--stop gives stops of one log; with several logs the stops of each are detected"
@@ -80,16 +77,12 @@ pub(crate) fn run(arguments: &TumbleArguments) -> Result<Reply, Failure> {
         left_out: arguments.left_out,
         clocks: &clocks,
     });
-    let views = &arguments.views;
     if !views.are_asked() {
         let command = format!("{} --figures figures", outputs::command_line());
         part.first.then(command, "pictures");
     }
-    let mut answer = Reply::of_part(&part);
-    // The folder of pictures first: the result for programs may go there too.
-    views.stage(&arguments.logs[0], part, &mut answer)?;
-    answer.write_json(json, &ResultFile::new(manifest, result))?;
-    Ok(answer)
+    let result = ResultFile::new(manifest, result);
+    views.answered(&arguments.logs[0], part, &result)
 }
 
 /// The test, and what there is to tell of the clocks.

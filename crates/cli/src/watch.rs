@@ -49,7 +49,7 @@ pub(crate) struct WatchArguments {
 pub(crate) fn run(arguments: &WatchArguments) -> Result<Reply, Failure> {
     let inputs = [&*arguments.record, &*arguments.bench].into_iter();
     let inputs: Vec<&Path> = inputs.chain(arguments.map.path()).collect();
-    outputs::check(&inputs, arguments.json.as_deref(), None)?;
+    outputs::check(&inputs, arguments.json.as_deref())?;
     let record = arguments.map.read(&arguments.record)?.into_sound()?;
     let bench = Bench::read(&arguments.bench)?;
     let options = WatchOptions {
@@ -60,10 +60,8 @@ pub(crate) fn run(arguments: &WatchArguments) -> Result<Reply, Failure> {
     let replay = watch_record(&record, &bench, &options)
         .map_err(|source| NotDiagnosed::new(&arguments.record, &bench, source))?;
     let mut answer = Reply::of(screen(&replay), text(&replay));
-    if arguments.json.is_some() {
-        let result = WatchResult::new(manifest(MODEL_HASH, 0, &inputs)?, replay);
-        answer.write_json(arguments.json.as_deref(), &result)?;
-    }
+    let result = WatchResult::new(manifest(MODEL_HASH, 0, &inputs)?, replay);
+    answer.write_json(arguments.json.as_deref(), &result)?;
     Ok(answer)
 }
 

@@ -1,10 +1,10 @@
 //! The first screen of a plan.
 
 use gyrocal_document::{Screen, Standing};
-use gyrocal_record::{InputRole, shell_quoted};
-use gyrocal_words::{counted, few, joined, record_and_bench};
+use gyrocal_record::InputRole;
+use gyrocal_words::{counted, few, hours, input_files, joined};
 
-use crate::prose::{attitude, durations, hours, known, percent, undecided, unit_angles};
+use crate::prose::{attitude, durations, known, percent, undecided, unit_angles};
 use crate::result::{Aim, AttitudeOf, PlanResult, Proposal};
 
 /// Names of a list that are shown.
@@ -60,53 +60,14 @@ pub fn first_screen(plan: &PlanResult) -> Screen {
 
 /// The records and the next one with their bench files and axes, as arguments of a command.
 fn with_next(plan: &PlanResult) -> String {
-    records_with_next(plan) + &axes_with_next(plan) + &columns(plan)
-}
-
-/// ` --columns MAP`, if there is a map of the columns of all records.
-fn columns(plan: &PlanResult) -> String {
-    let inputs = plan.manifest.inputs.iter();
-    let maps = inputs.filter(|input| input.role == Some(InputRole::Columns));
-    maps.map(|map| format!(" --columns {}", shell_quoted(&map.path)))
-        .collect()
-}
-
-/// ` --gyro-axes AXES` of each record and the next; empty of a stabilised platform.
-fn axes_with_next(plan: &PlanResult) -> String {
-    if plan.attitude_of != AttitudeOf::Unit {
-        return String::new();
-    }
-    let count = plan.records.len().max(1);
-    let given = plan.manifest.inputs.iter();
-    let given = given.filter(|input| input.role == Some(InputRole::GyroAxes));
-    let given: Vec<String> = given.map(|input| shell_quoted(&input.path)).collect();
-    let path = |place: usize| {
-        given
-            .get(place)
-            .map_or("AXES.csv", String::as_str)
-            .to_owned()
-    };
-    let paths = (0..count).map(path).chain(["next.axes.csv".to_owned()]);
-    paths.map(|path| format!(" --gyro-axes {path}")).collect()
-}
-
-/// The records and the next one with their bench files.
-fn records_with_next(plan: &PlanResult) -> String {
-    let inputs = &plan.manifest.inputs;
-    let count = plan.records.len();
-    if count == 0 || inputs.len() < 2 * count {
-        let files = record_and_bench(inputs).replacen(" --", " next.csv --", 1);
-        return format!("{files} --bench next.toml");
-    }
-    let quoted = |first: usize| -> Vec<String> {
-        let files = inputs[..2 * count].iter().skip(first).step_by(2);
-        files.map(|input| shell_quoted(&input.path)).collect()
-    };
-    format!(
-        "{} next.csv --bench {} --bench next.toml",
-        quoted(0).join(" "),
-        quoted(1).join(" --bench ")
-    )
+    let next = [
+        (InputRole::Record, "next.csv"),
+        (InputRole::Bench, "next.toml"),
+        (InputRole::GyroAxes, "next.axes.csv"),
+    ];
+    let is_unit = plan.attitude_of == AttitudeOf::Unit;
+    let next = &next[..if is_unit { 3 } else { 2 }];
+    input_files(&plan.manifest.inputs, is_unit, next)
 }
 
 /// What the records leave open.

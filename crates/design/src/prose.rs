@@ -4,7 +4,7 @@ use crate::result::{Aim, AttitudeOf, Outlook, PlanResult, Proposal, SetForecast,
 use gyrocal_record::printable_line;
 
 use gyrocal_document::{Column, List, Table, Words};
-use gyrocal_words::{joined, setup, size};
+use gyrocal_words::{hours, joined, setup, size};
 
 /// Probability above which two causes count as distinguished.
 const DISTINGUISHED: f64 = 0.95;
@@ -27,9 +27,13 @@ pub fn prose(plan: &PlanResult) -> Vec<Words> {
             continue;
         };
         let sets = undecided(&best.outlook).map(set_forecast);
+        let sigmas = format!(
+            "sigmas of the nine coefficients: {:.2} of the present ones (geometric mean)",
+            best.outlook.sigma_ratio
+        );
         blocks.push(Words::List(List {
             title: recommendation(plan, best, index == 0),
-            entries: sets.chain([sigma_forecast(&best.outlook)]).collect(),
+            entries: sets.chain([sigmas]).collect(),
         }));
         if let Some(going_on) = plan.going_on.iter().find(of_it) {
             blocks.push(Words::Paragraph(continuation(&going_on.outlook)));
@@ -144,13 +148,6 @@ fn set_forecast(set: &SetForecast) -> String {
         }
     }
     words
-}
-
-fn sigma_forecast(outlook: &Outlook) -> String {
-    format!(
-        "sigmas of the nine coefficients: {:.2} of the present ones (geometric mean)",
-        outlook.sigma_ratio
-    )
 }
 
 fn continuation(outlook: &Outlook) -> String {
@@ -298,16 +295,6 @@ pub(crate) fn unit_angles(plan: &PlanResult) -> Option<&'static str> {
     )
 }
 
-/// A duration in hours.
-pub(crate) fn hours(duration_s: f64) -> String {
-    let hours = duration_s / 3600.0;
-    if hours >= 10.0 {
-        format!("{hours:.0} h")
-    } else {
-        format!("{hours:.1} h")
-    }
-}
-
 /// A probability in percent, never 100 %.
 pub(crate) fn percent(p: f64) -> String {
     if p > 0.99 {
@@ -331,6 +318,7 @@ mod tests {
     #[test]
     fn hours_have_the_digits_that_matter() {
         assert_eq!(hours(259_200.0), "72 h");
+        assert_eq!(hours(45_000.0), "12.5 h");
         assert_eq!(hours(5_400.0), "1.5 h");
     }
 }

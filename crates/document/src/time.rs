@@ -7,8 +7,6 @@ pub struct TimeAxis {
     pub values: Vec<f64>,
     /// The unit: `s`, `min`, `h` or `days`.
     pub unit: &'static str,
-    /// Seconds of the unit.
-    pub unit_s: f64,
 }
 
 impl TimeAxis {
@@ -26,7 +24,6 @@ impl TimeAxis {
         Self {
             values: time_s.iter().map(|time| (time - first) / unit_s).collect(),
             unit,
-            unit_s,
         }
     }
 }

@@ -16,6 +16,14 @@ pub enum Words {
     Command(String),
 }
 
+impl Words {
+    /// A list; `None` without entries.
+    #[must_use]
+    pub fn list(title: &str, entries: impl IntoIterator<Item = String>) -> Option<Self> {
+        List::of(title, entries).map(Self::List)
+    }
+}
+
 /// A list.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
 pub struct List {
@@ -135,11 +143,5 @@ impl From<String> for Cell {
             text,
             strong: false,
         }
-    }
-}
-
-impl From<&str> for Cell {
-    fn from(text: &str) -> Self {
-        Self::from(text.to_owned())
     }
 }

@@ -1,6 +1,6 @@
 //! The sentences and tables of what a fleet shows.
 
-use gyrocal_document::{List, Screen, Standing, Table, Words};
+use gyrocal_document::{Screen, Standing, Table, Words};
 use gyrocal_statistics::format;
 use gyrocal_words::{capitalised, counted, few, joined};
 
@@ -18,26 +18,21 @@ pub fn all(fleet: &FleetResult) -> Vec<Words> {
         Words::Paragraph(size(fleet)),
         Words::Paragraph(verdict(fleet)),
     ];
-    let list = |title: &str, entries: Vec<String>| List::of(title, entries).map(Words::List);
-    let recurring = fleet.recurring.iter().map(recurring).collect();
-    blocks.extend(list(
+    blocks.extend(Words::list(
         "Causes that recur below what units show by themselves",
-        recurring,
+        fleet.recurring.iter().map(recurring),
     ));
-    let groups = fleet.groups.iter().map(group).collect();
-    blocks.extend(list("Batches and sites that differ", groups));
-    blocks.extend(list("Units outside of the others", outliers(fleet)));
+    let groups = fleet.groups.iter().map(group);
+    blocks.extend(Words::list("Batches and sites that differ", groups));
+    blocks.extend(Words::list("Units outside of the others", outliers(fleet)));
     let found = fleet.found_in_units.iter().map(|one| {
         let units = counted(one.units.len(), "unit");
         format!("`{}` in {units}: {}", one.effect, few(&one.units, NAMED))
     });
-    blocks.extend(list(
-        "Causes that units show by themselves",
-        found.collect(),
-    ));
+    blocks.extend(Words::list("Causes that units show by themselves", found));
     let problems = fleet.problems.iter();
     let problems = problems.map(|one| format!("{}/{}: {}", one.unit, one.record, one.problem));
-    blocks.extend(list("Records that are left out", problems.collect()));
+    blocks.extend(Words::list("Records that are left out", problems));
     blocks
 }
 

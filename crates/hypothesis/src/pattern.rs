@@ -124,21 +124,4 @@ impl Unmodelled {
             })
         })
     }
-
-    /// One sentence without a full stop.
-    #[must_use]
-    pub fn description(&self) -> String {
-        let Channel { name, unit, .. } = self.describes;
-        let size = self.size;
-        match self.pattern {
-            Pattern::Line { period_h } => format!(
-                "a line in the {name} with a period of {period_h:.2} h and an amplitude of \
-                 {size:.2e} {unit}, which no effect of the catalogue explains"
-            ),
-            Pattern::Curve { name: of, .. } => format!(
-                "the {name} depends on {of} as no polynomial of the catalogue does, \
-                 {size:.2e} {unit} rms"
-            ),
-        }
-    }
 }

@@ -1,6 +1,8 @@
 //! Allan deviations of columns of a log.
 
-use gyrocal_record::{InputErrorKind, SourceText};
+use std::path::Path;
+
+use gyrocal_record::InputErrorKind;
 use gyrocal_statistics::allan::{
     AllanEstimator, AllanPoint, NoiseFit, allan_deviation, fit_noise, hadamard_deviation, octaves,
     total_deviation,
@@ -8,9 +10,12 @@ use gyrocal_statistics::allan::{
 use serde::Serialize;
 
 use crate::bad_samples::{BadSample, WithoutBadSamples};
-use crate::columns::read_columns;
+use crate::cell::Wanted;
+use crate::columns::FileColumns;
+use crate::description::Description;
 use crate::error::{InstrumentError, Unfit};
-use crate::log::Log;
+use crate::log::{Log, refuse_still};
+use crate::row_time::RowTime;
 
 /// Settings of the analysis of columns of a log.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -99,25 +104,50 @@ impl From<&AllanPoint> for AllanColumnPoint {
     }
 }
 
-/// Deviations of columns of a log at octaves of the sampling interval, and the parts of their noise.
+/// Deviations of columns of a log at octaves of the sampling interval, and the parts of their noise. The file is a text
+/// with a header, separated by commas, or one whose columns have types.
 ///
 /// # Errors
-/// As [`read_columns`]; [`InstrumentError`] for a column that never changes, and for values that
-/// `scale` makes infinite.
-pub fn allan_columns(
-    source: &SourceText,
+///
+/// [`InstrumentError::File`] for a column that is absent, not of numbers, never changes, or repeats a value while those
+/// about it scatter; [`InstrumentError`] for values that `scale` makes infinite; [`gyrocal_record::Error::Unreadable`].
+pub fn allan_file(
+    path: &Path,
     names: &[&str],
     settings: &AllanSettings,
 ) -> Result<Vec<AllanColumn>, InstrumentError> {
-    let columns = read_columns(source, names)?.values;
-    names
-        .iter()
-        .zip(columns)
-        .map(|(name, values)| {
+    let description = Description::parse("[time]\nrate_hz = 1\n", "columns by their names")?;
+    let wanted = Wanted {
+        names,
+        sparse: 0..0,
+    };
+    let time = RowTime::new(&description);
+    let file = FileColumns::read(path, &description.file, &wanted, time)?;
+    of_file(&file, names, settings)
+}
+
+fn of_file(
+    file: &FileColumns,
+    names: &[&str],
+    settings: &AllanSettings,
+) -> Result<Vec<AllanColumn>, InstrumentError> {
+    let columns = names.iter().zip(&file.values).enumerate();
+    columns
+        .map(|(column, (name, values))| {
             if values.len() > 1 && values.windows(2).all(|pair| pair[0] == pair[1]) {
-                return Err(constant(source, name));
+                return Err(file.error_at(
+                    0,
+                    InputErrorKind::Stuck,
+                    Unfit::Stuck,
+                    [
+                        &format!("a column `{name}` that never changes"),
+                        "samples of a rate, which has noise",
+                        "check the sensor and the logger",
+                    ],
+                ));
             }
-            allan_values(name, &values, settings)
+            refuse_still(file, column, name, false)?;
+            allan_values(name, values, settings)
         })
         .collect()
 }
@@ -184,7 +214,7 @@ fn deviations(
 ///
 /// # Errors
 ///
-/// As [`allan_columns`]; [`InstrumentError`] for gyros in counts without a scale.
+/// As [`allan_file`]; [`InstrumentError`] for gyros in counts without a scale.
 pub fn allan_log(
     log: &Log,
     names: [&str; 3],
@@ -218,15 +248,4 @@ fn overflow(name: &str, scale: f64) -> InstrumentError {
         expected: "finite numbers".to_owned(),
         advice: "give a smaller --scale".to_owned(),
     }
-}
-
-fn constant(source: &SourceText, name: &str) -> InstrumentError {
-    let error = source.error(
-        InputErrorKind::Stuck,
-        0..0,
-        format!("a column `{name}` that never changes"),
-        "samples of a rate, which has noise",
-        "check the sensor and the logger",
-    );
-    error.into()
 }

@@ -1,6 +1,7 @@
 //! Cells of a file with typed columns, as each format hands them over, and the errors that all formats share.
 
 use core::fmt::{Display, Formatter};
+use core::ops::Range;
 
 use gyrocal_record::InputErrorKind;
 
@@ -103,6 +104,15 @@ impl Fault {
             ..self
         }
     }
+}
+
+/// Columns that are read of a file.
+#[derive(Debug, Clone)]
+pub(crate) struct Wanted<'a> {
+    /// Their names.
+    pub(crate) names: &'a [&'a str],
+    /// Those of slower sensors, by their order: a missing value is `NaN`.
+    pub(crate) sparse: Range<usize>,
 }
 
 /// Takes the cells of one row; an error ends the reading.

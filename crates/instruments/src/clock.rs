@@ -71,6 +71,9 @@ pub(crate) fn steady_clock(stamps: &[f64]) -> Result<SteadyClock, [usize; 2]> {
     if count < 8 {
         return Err([0, count.saturating_sub(1)]);
     }
+    if Rounded::of(stamps).is_some_and(|rounded| rounded.is_whole()) {
+        return Ok(fitted(stamps));
+    }
     let rough = fitted(stamps);
     let rough_s = (rough.time_s[count - 1] - rough.time_s[0]) / (count - 1) as f64;
     if rough_s.is_nan() || rough_s <= 0.0 {
@@ -95,6 +98,63 @@ pub(crate) fn steady_clock(stamps: &[f64]) -> Result<SteadyClock, [usize; 2]> {
         }
     }
     Ok(fitted(stamps))
+}
+
+/// Stamps in steps, each of several samples, as those of whole seconds.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Rounded {
+    /// Usual step \[s\].
+    pub(crate) step_s: f64,
+    /// Shortest and longest step \[s\].
+    steps_s: [f64; 2],
+    /// Fewest and most samples of a step, but for the first and the last.
+    pub(crate) samples: [usize; 2],
+    /// Their mean.
+    pub(crate) mean: f64,
+    /// Range of the number of samples up to a step about that of equal steps.
+    drift: f64,
+}
+
+impl Rounded {
+    /// The steps of stamps that never fall; `None` if most do not repeat the one before.
+    pub(crate) fn of(stamps: &[f64]) -> Option<Self> {
+        const FEWEST_SAMPLES: f64 = 2.5;
+        const FEWEST_STEPS: usize = 3;
+        let groups: Vec<&[f64]> = stamps.chunk_by(|one, next| one == next).collect();
+        let inner = groups.get(1..groups.len().checked_sub(1)?)?;
+        let lengths = || inner.iter().map(|group| group.len());
+        let mean = lengths().sum::<usize>() as f64 / inner.len() as f64;
+        let mut sum = 0.0;
+        let drifts: Vec<f64> = lengths()
+            .map(|length| {
+                sum += length as f64 - mean;
+                sum
+            })
+            .collect();
+        if inner.len() < FEWEST_STEPS || mean < FEWEST_SAMPLES {
+            return None;
+        }
+        let steps: Vec<f64> = groups
+            .windows(2)
+            .map(|pair| pair[1][0] - pair[0][0])
+            .collect();
+        Some(Self {
+            step_s: median(&steps),
+            steps_s: [quantile(&steps, 0.0), quantile(&steps, 1.0)],
+            samples: [lengths().min()?, lengths().max()?],
+            mean,
+            drift: quantile(&drifts, 1.0) - quantile(&drifts, 0.0),
+        })
+    }
+
+    /// Whether no sample is missing: steps are equal, and rounding alone tells how many samples each has.
+    fn is_whole(&self) -> bool {
+        const EQUAL: f64 = 0.01;
+        // One sample at either end of a step may be rounded either way.
+        const ROUNDING: f64 = 2.001;
+        let [shortest_s, longest_s] = self.steps_s;
+        longest_s - shortest_s <= EQUAL * self.step_s && self.drift <= ROUNDING
+    }
 }
 
 fn spread(delays: &[f64]) -> f64 {
@@ -139,6 +199,32 @@ pub(crate) fn resampled(time_s: &[f64], samples: &[[f64; 3]], at_s: &[f64]) -> V
             core::array::from_fn(|axis| before[axis] + share * (after[axis] - before[axis]))
         })
         .collect()
+}
+
+/// Interpolates missing values between their neighbours; before the first and after the last they are as
+/// those.
+pub(crate) fn fill(time_s: &[f64], column: &mut [f64]) {
+    let known: Vec<usize> = (0..column.len())
+        .filter(|row| !column[*row].is_nan())
+        .collect();
+    let (Some(first), Some(last)) = (known.first(), known.last()) else {
+        return;
+    };
+    let (at_first, at_last) = (column[*first], column[*last]);
+    column[..*first].fill(at_first);
+    column[*last..].fill(at_last);
+    for pair in known.windows(2) {
+        let [from, to] = [pair[0], pair[1]];
+        let length_s = time_s[to] - time_s[from];
+        for row in from + 1..to {
+            // Samples of a packet may share a stamp.
+            let share = match length_s > 0.0 {
+                true => (time_s[row] - time_s[from]) / length_s,
+                false => 0.0,
+            };
+            column[row] = column[from] + share * (column[to] - column[from]);
+        }
+    }
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use std::path::Path;
 use gyrocal_record::{Error, InputErrorKind, SourceText};
 
 use crate::binary_file::read_binary;
-use crate::cell::Cell;
+use crate::cell::{Cell, Wanted};
 use crate::error::{InstrumentError, Unfit};
 use crate::file_format::{Binary, FileFormat, Only};
 use crate::log_lines::log_lines;
@@ -45,16 +45,21 @@ pub fn read_described(
     format: &FileFormat,
     names: &[&str],
 ) -> Result<Columns, Error> {
-    read_timed(source, format, names, None)
+    let all = Wanted {
+        names,
+        sparse: 0..0,
+    };
+    read_timed(source, format, &all, None)
 }
 
 /// As [`read_described`], and behind the columns the time of each row \[s\] if it has columns.
 pub(crate) fn read_timed(
     source: &SourceText,
     format: &FileFormat,
-    names: &[&str],
+    wanted: &Wanted<'_>,
     mut time: Option<RowTime<'_>>,
 ) -> Result<Columns, Error> {
+    let names = wanted.names;
     let mut lines = log_lines(source, format).peekable();
     let mut all = names.to_vec();
     all.extend(time.iter().flat_map(RowTime::names));
@@ -67,8 +72,12 @@ pub(crate) fn read_timed(
         if !selection.takes(source, format, &line)? {
             continue;
         }
-        for (column, &index) in values.iter_mut().zip(sensors) {
-            let number = number(source, format, &line.fields[index]);
+        for (at, (column, &index)) in values.iter_mut().zip(sensors).enumerate() {
+            let field = &line.fields[index];
+            let number = match wanted.sparse.contains(&at) {
+                true => number_or_none(source, format, field, places.len()),
+                false => number(source, format, field),
+            };
             column.push(
                 number.map_err(|error| selection.or_second_header(source, format, &line, error))?,
             );
@@ -119,20 +128,19 @@ impl FileColumns {
         }
     }
 
-    /// Reads the columns `names` of a file of any format, and behind them the time of each row \[s\] if it has
-    /// columns.
+    /// Reads columns of a file of any format, and behind them the time of each row \[s\] if it has columns.
     pub(crate) fn read(
         path: &Path,
         format: &FileFormat,
-        names: &[&str],
+        wanted: &Wanted<'_>,
         time: RowTime<'_>,
     ) -> Result<Self, InstrumentError> {
         let values = match (&format.binary, TypedFile::of(path)?) {
             (Some(binary), _) => {
-                read_binary_timed(path, (binary, format.only.as_ref()), names, time)?
+                read_binary_timed(path, (binary, format.only.as_ref()), wanted.names, time)?
             }
-            (None, Some(typed)) => typed.columns(path, format, names, time)?,
-            (None, None) => return Self::of_text(format.read(path)?, format, names, time),
+            (None, Some(typed)) => typed.columns(path, format, wanted, time)?,
+            (None, None) => return Self::of_text(format.read(path)?, format, wanted, time),
         };
         Ok(Self { values, text: None })
     }
@@ -140,10 +148,10 @@ impl FileColumns {
     pub(crate) fn of_text(
         source: SourceText,
         format: &FileFormat,
-        names: &[&str],
+        wanted: &Wanted<'_>,
         time: RowTime<'_>,
     ) -> Result<Self, InstrumentError> {
-        let Columns { values, places } = read_timed(&source, format, names, Some(time))?;
+        let Columns { values, places } = read_timed(&source, format, wanted, Some(time))?;
         Ok(Self {
             values,
             text: Some((source, places)),
@@ -172,6 +180,29 @@ fn read_binary_timed(
     let time_s = time_s.collect::<Result<Vec<f64>, InstrumentError>>()?;
     values.push(time_s);
     Ok(values)
+}
+
+/// The number of a slower sensor in a row, counted from 0; `NaN` if it is missing.
+fn number_or_none(
+    source: &SourceText,
+    format: &FileFormat,
+    field: &(Range<usize>, &str),
+    row: usize,
+) -> Result<f64, Error> {
+    let (span, text) = field;
+    if format.is_missing(text) {
+        return Ok(f64::NAN);
+    }
+    let number = format.decimal.number(text);
+    number.filter(|value| !value.is_infinite()).ok_or_else(|| {
+        source.error(
+            InputErrorKind::NotANumber,
+            span.clone(),
+            format!("`{}`", &source.text()[span.clone()]),
+            "a finite number, or an empty field for a missing one",
+            remedy::of_value(format, text, row).unwrap_or_default(),
+        )
+    })
 }
 
 fn number(

@@ -64,6 +64,8 @@ pub enum Unfit {
     Temperature,
     /// A gyro at the end of its range.
     Saturated,
+    /// A gyro that repeats one value, or rows that are padding.
+    Stuck,
     /// A setting outside its range.
     Setting,
 }

@@ -40,6 +40,11 @@ impl FileFormat {
     pub(crate) fn read(&self, path: &Path) -> Result<SourceText, Error> {
         SourceText::read_as(path, self.encoding.as_deref())
     }
+
+    /// Whether a text stands for a missing value.
+    pub(crate) fn is_missing(&self, text: &str) -> bool {
+        text.is_empty() || self.missing.iter().any(|missing| missing == text)
+    }
 }
 
 impl Default for FileFormat {

@@ -96,7 +96,7 @@ mod typed_file;
 pub use accel_from_norm::{AccelCalibration, accel_from_norm, refuse_wrong_norm};
 pub use accel_from_positions::{AccelCoefficient, AccelErrors, accel_from_positions};
 pub use allan_analysis::{
-    AllanColumn, AllanColumnPoint, AllanReport, AllanSettings, LeftOut, allan_columns, allan_log,
+    AllanColumn, AllanColumnPoint, AllanReport, AllanSettings, LeftOut, allan_file, allan_log,
     allan_values,
 };
 pub use bad_samples::BadSample;

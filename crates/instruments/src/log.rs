@@ -1,13 +1,16 @@
 //! Logs of three gyros, most with three accelerometers.
 
+mod slower;
 mod stamps;
+mod stuck;
 mod wild;
 
 use std::path::Path;
 
-use gyrocal_record::{InputErrorKind, SourceText};
+use gyrocal_record::SourceText;
 use gyrocal_statistics::median_interval_s;
 
+use crate::cell::Wanted;
 use crate::clock::{Clock, resampled, steady_clock};
 use crate::columns::FileColumns;
 use crate::covariates::{Saturated, refuse_saturated, saturated, temperatures_c};
@@ -16,6 +19,11 @@ use crate::error::{InstrumentError, Unfit};
 use crate::row_time::RowTime;
 use crate::scale::{accel_scale, gyro_scale};
 
+use self::slower::fill_slower;
+use self::stamps::refuse_backwards;
+use self::stuck::refuse_stuck;
+
+pub(crate) use stuck::refuse_still;
 pub use wild::BadSamples;
 pub(crate) use wild::of_logs;
 
@@ -68,8 +76,8 @@ impl Log {
     ///
     /// # Errors
     ///
-    /// [`InstrumentError::File`] at its place in the file; [`Unfit::Gap`], [`Unfit::Jitter`],
-    /// [`Unfit::NoScale`] and [`Unfit::Saturated`].
+    /// [`InstrumentError::File`] at its place in a text; [`Unfit::Gap`], [`Unfit::Jitter`], [`Unfit::NoScale`],
+    /// [`Unfit::Stuck`] and [`Unfit::Saturated`].
     pub fn read(path: &Path, description: &Description) -> Result<Self, InstrumentError> {
         Self::read_with(path, description, AtEndOfRange::Refused)
     }
@@ -90,7 +98,7 @@ impl Log {
         at_end: AtEndOfRange,
     ) -> Result<Self, InstrumentError> {
         let (names, time) = (names(description)?, RowTime::new(description));
-        let file = FileColumns::read(path, &description.file, &names, time)?;
+        let file = FileColumns::read(path, &description.file, &wanted(&names, description), time)?;
         Self::from_columns(file, description, at_end)
     }
 
@@ -106,7 +114,8 @@ impl Log {
     ) -> Result<Self, InstrumentError> {
         let source = SourceText::new(text, name)?;
         let (names, time) = (names(description)?, RowTime::new(description));
-        let file = FileColumns::of_text(source, &description.file, &names, time)?;
+        let wanted = wanted(&names, description);
+        let file = FileColumns::of_text(source, &description.file, &wanted, time)?;
         Self::from_columns(file, description, AtEndOfRange::Refused)
     }
 
@@ -152,7 +161,7 @@ impl Log {
     }
 
     fn from_columns(
-        file: FileColumns,
+        mut file: FileColumns,
         description: &Description,
         at_end: AtEndOfRange,
     ) -> Result<Self, InstrumentError> {
@@ -161,11 +170,15 @@ impl Log {
         let accel = description.accel.as_ref();
         let accel_scale = accel.map(|accel| accel_scale(accel, &description.site));
         let accel_scale = accel_scale.transpose()?;
+        let turns = at_end == AtEndOfRange::Told;
+        refuse_stuck(&file, gyro, sensors(description), turns)?;
+        let (time_s, clock) = times(&file, &description.time);
+        let interval_s = usual_interval_s(&time_s)?;
+        refuse_backwards(&file, &time_s, interval_s)?;
+        fill_slower(&mut file, &time_s, description)?;
         let columns = &file.values;
         let rows = columns.first().map_or(0, Vec::len);
         let mut others = columns[sensors(description)..].iter();
-        let (time_s, clock) = times(&file, &description.time)?;
-        let interval_s = usual_interval_s(&time_s)?;
         let temperature_c = match (&description.temperature, others.len()) {
             (Some(column), 1..) => {
                 let values = others.next().map_or(&[][..], Vec::as_slice);
@@ -218,13 +231,13 @@ impl Log {
             return Ok(log);
         }
         match description.time.jitter {
-            Jitter::Steady => log.on_steady_clock(),
+            Jitter::Steady => log.on_steady_clock(&file),
             Jitter::Use => {
-                log.refuse_long_gaps()?;
+                log.refuse_long_gaps(&file)?;
                 Ok(log)
             }
             Jitter::Resample => {
-                log.refuse_long_gaps()?;
+                log.refuse_long_gaps(&file)?;
                 Ok(log.at_equal_intervals())
             }
         }
@@ -245,7 +258,7 @@ impl Log {
     }
 
     /// The samples on the steady clock behind stamps that jitter.
-    fn on_steady_clock(self) -> Result<Self, InstrumentError> {
+    fn on_steady_clock(self, file: &FileColumns) -> Result<Self, InstrumentError> {
         match steady_clock(&self.time_s) {
             Ok(steady) => Ok(Self {
                 interval_s: median_interval_s(&steady.time_s),
@@ -255,7 +268,7 @@ impl Log {
                 },
                 ..self
             }),
-            Err(between) => Err(self.gap(between)),
+            Err([from, _]) => Err(self.gap(file, from)),
         }
     }
 
@@ -295,20 +308,30 @@ impl Log {
 }
 
 /// Times of the rows, which are the last column, and how they are known.
-fn times(file: &FileColumns, time: &Time) -> Result<(Vec<f64>, Clock), InstrumentError> {
+fn times(file: &FileColumns, time: &Time) -> (Vec<f64>, Clock) {
     if let Some(rate_hz) = time.rate_hz {
         let (interval_s, rows) = (1.0 / rate_hz, file.values.first().map_or(0, Vec::len));
         let time_s = (1..=rows).map(|row| row as f64 * interval_s).collect();
-        return Ok((time_s, Clock::Rate));
+        return (time_s, Clock::Rate);
     }
-    let time_s = file.values.last().cloned().unwrap_or_default();
-    refuse_backwards(file, &time_s)?;
-    Ok((time_s, Clock::Stamps))
+    (
+        file.values.last().cloned().unwrap_or_default(),
+        Clock::Stamps,
+    )
 }
 
 /// Columns of gyros and accelerometers, which come first.
 fn sensors(description: &Description) -> usize {
     3 + 3 * usize::from(description.accel.is_some())
+}
+
+/// The columns of names, and those of slower sensors among them.
+fn wanted<'a>(names: &'a [&'a str], description: &Description) -> Wanted<'a> {
+    let with_temperature = sensors(description) + usize::from(description.temperature.is_some());
+    Wanted {
+        names,
+        sparse: 3..with_temperature,
+    }
 }
 
 /// Columns of the description: gyros, accelerometers, temperature, turntable.
@@ -334,22 +357,6 @@ fn gyro_of(description: &Description) -> Result<&Gyro, InstrumentError> {
              names and the unit of the log; only the record of a stable platform has no gyros",
         )
     })
-}
-
-fn refuse_backwards(file: &FileColumns, time_s: &[f64]) -> Result<(), InstrumentError> {
-    let Some(row) = time_s.windows(2).position(|pair| pair[1] < pair[0]) else {
-        return Ok(());
-    };
-    let found = format!("time {} s after {} s", time_s[row + 1], time_s[row]);
-    let expected = "times that rise";
-    let advice = "split the file in front of this line, with the header in front of both parts, and give both logs; if \
-                  only the stamps are wrong, give `rate_hz` in place of the time column";
-    Err(file.error_at(
-        row + 1,
-        InputErrorKind::Time,
-        Unfit::Jitter,
-        [&found, expected, advice],
-    ))
 }
 
 fn usual_interval_s(time_s: &[f64]) -> Result<f64, InstrumentError> {

@@ -7,11 +7,12 @@
 //! chapter 1.
 
 use std::borrow::Cow;
+use std::fs::Metadata;
 use std::io::Read;
 use std::path::Path;
 
 use flate2::read::ZlibDecoder;
-use gyrocal_record::read_content;
+use gyrocal_record::{LARGE_MIB, LARGE_RATIO, read_content};
 
 use crate::cell::{Cell, TakeCells, no_column, unfit};
 use crate::error::InstrumentError;
@@ -100,10 +101,7 @@ pub(crate) fn read(
             "write it with `save(name, variables, '-v7')`",
         ));
     };
-    let matrices = matrices(&bytes[HEADER..], order).ok_or_else(|| {
-        let advice = "copy the file again; it ends early, or is damaged";
-        unfit("an element that is not whole", "a whole file", advice)
-    })?;
+    let matrices = matrices(&bytes[HEADER..], order, stored_bytes(path, &bytes))?;
     let columns = names
         .iter()
         .map(|name| column(&matrices, name).ok_or_else(|| no_column(name, &list(&matrices))))
@@ -150,29 +148,80 @@ fn list(matrices: &[Matrix]) -> String {
     }
 }
 
-/// The matrices of a file after its header; `None` if it is damaged.
-fn matrices(bytes: &[u8], order: ByteOrder) -> Option<Vec<Matrix>> {
+/// Bytes of a file as it is stored: those of its content if it is a stream.
+fn stored_bytes(path: &Path, content: &[u8]) -> u64 {
+    let file = std::fs::metadata(path).ok().filter(Metadata::is_file);
+    file.map_or(content.len() as u64, |file| file.len())
+}
+
+fn not_whole() -> InstrumentError {
+    let advice = "copy the file again; it ends early, or is damaged";
+    unfit("an element that is not whole", "a whole file", advice)
+}
+
+/// The matrices of a file, which is stored in so many bytes, after its header.
+fn matrices(bytes: &[u8], order: ByteOrder, stored: u64) -> Result<Vec<Matrix>, InstrumentError> {
     let mut found = Vec::new();
     let mut file = Elements { bytes, order };
+    let mut room = Room::of(stored);
     while !file.bytes.is_empty() {
-        let (kind, content) = file.next()?;
+        let (kind, content) = file.next().ok_or_else(not_whole)?;
         match kind {
             COMPRESSED => {
-                let mut inflated = Vec::new();
-                ZlibDecoder::new(content).read_to_end(&mut inflated).ok()?;
+                let inflated = room.inflated(content)?;
                 let mut inner = Elements {
                     bytes: &inflated,
                     order,
                 };
-                if let (ARRAY, content) = inner.next()? {
-                    array(content, order, "", 0, &mut found)?;
+                if let (ARRAY, content) = inner.next().ok_or_else(not_whole)? {
+                    array(content, order, "", 0, &mut found).ok_or_else(not_whole)?;
                 }
             }
-            ARRAY => array(content, order, "", 0, &mut found)?,
+            ARRAY => array(content, order, "", 0, &mut found).ok_or_else(not_whole)?,
             _ => {}
         }
     }
-    Some(found)
+    Ok(found)
+}
+
+/// Room for the content of the compressed variables of a file.
+struct Room {
+    stored: u64,
+    most: u64,
+    left: u64,
+}
+
+impl Room {
+    fn of(stored: u64) -> Self {
+        let most = (LARGE_MIB << 20).max(stored.saturating_mul(LARGE_RATIO));
+        Self {
+            stored,
+            most,
+            left: most,
+        }
+    }
+
+    /// The content of a compressed variable.
+    fn inflated(&mut self, content: &[u8]) -> Result<Vec<u8>, InstrumentError> {
+        let mut inflated = Vec::new();
+        ZlibDecoder::new(content)
+            .take(self.left)
+            .read_to_end(&mut inflated)
+            .map_err(|_| not_whole())?;
+        self.left -= inflated.len() as u64;
+        if self.left > 0 {
+            return Ok(inflated);
+        }
+        Err(unfit(
+            &format!(
+                "compressed variables of {} MiB and more in a file of {} bytes",
+                self.most >> 20,
+                self.stored
+            ),
+            &format!("less than {LARGE_RATIO} times the size of the file"),
+            "write it with `save(name, variables, '-v6')`, which does not compress, if it is a log",
+        ))
+    }
 }
 
 /// Adds the matrices of an array; those of another class are passed over.

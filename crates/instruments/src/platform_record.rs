@@ -5,6 +5,7 @@ use std::path::Path;
 use gyrocal_record::{Error, InputErrorKind, Record, RecordFile, SourceText, shell_quoted};
 use gyrocal_statistics::median_interval_s;
 
+use crate::clock::fill;
 use crate::description::temperature::TemperatureUnit;
 use crate::description::{Description, Jitter, Temperature};
 use crate::error::InstrumentError;
@@ -188,27 +189,6 @@ pub(crate) fn finished(mut record: Record, description: &Description) -> Record 
     match description.time.jitter {
         Jitter::Resample => resampled(&record),
         _ => record,
-    }
-}
-
-/// Interpolates missing values between their neighbours; before the first and after the last they are as
-/// those.
-fn fill(time_s: &[f64], column: &mut [f64]) {
-    let known: Vec<usize> = (0..column.len())
-        .filter(|row| !column[*row].is_nan())
-        .collect();
-    let (Some(first), Some(last)) = (known.first(), known.last()) else {
-        return;
-    };
-    let (at_first, at_last) = (column[*first], column[*last]);
-    column[..*first].fill(at_first);
-    column[*last..].fill(at_last);
-    for pair in known.windows(2) {
-        let [from, to] = [pair[0], pair[1]];
-        for row in from + 1..to {
-            let share = (time_s[row] - time_s[from]) / (time_s[to] - time_s[from]);
-            column[row] = column[from] + share * (column[to] - column[from]);
-        }
     }
 }
 

@@ -105,7 +105,7 @@ impl<'a> PlatformRow<'a> {
         let format = &self.description.file;
         match cells[column] {
             Cell::Text(text) => {
-                if text.is_empty() || format.missing.iter().any(|missing| missing == text) {
+                if format.is_missing(text) {
                     return Ok(f64::NAN);
                 }
                 let number = format.decimal.number(text);

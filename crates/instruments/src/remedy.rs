@@ -9,6 +9,18 @@ pub(crate) const COMMENTS: [&str; 5] = ["#", "%", "//", "!", "*"];
 /// Words that programs write for a missing value.
 const MISSING: [&str; 8] = ["na", "n/a", "null", "none", "-", "--", "#n/a", "missing"];
 
+/// Formats of dates and times that programs write, beside RFC 3339.
+const FORMATS: [&str; 8] = [
+    "%d.%m.%Y %H:%M:%S%.f",
+    "%d/%m/%Y %H:%M:%S%.f",
+    "%m/%d/%Y %H:%M:%S%.f",
+    "%m/%d/%Y %I:%M:%S%.f %p",
+    "%Y/%m/%d %H:%M:%S%.f",
+    "%d-%b-%Y %H:%M:%S%.f",
+    "%Y %j %H:%M:%S%.f",
+    "%H:%M:%S%.f",
+];
+
 /// The advice to add a line to a table of the description.
 fn add(line: &str, table: &str) -> String {
     format!("add `{line}` to `[{table}]` of the map (`--columns MAP.toml`)")
@@ -86,7 +98,26 @@ pub(crate) fn of_time(format: &FileFormat, text: &str) -> Option<String> {
     if DateTimes::rfc3339().seconds(text).is_some() {
         return Some(add("unit = \"rfc3339\"", "time"));
     }
-    of_number(format, text)
+    of_date(text).or_else(|| of_number(format, text))
+}
+
+/// Remedy for a date and time in words.
+pub(crate) fn of_date(text: &str) -> Option<String> {
+    let reads = |format: &&str| {
+        DateTimes::of_format(format).is_some_and(|mut reader| reader.seconds(text).is_some())
+    };
+    // Day and month may be either.
+    let lines: Vec<String> = FORMATS
+        .iter()
+        .filter(|format| reads(format))
+        .map(|format| format!("`format = \"{format}\"`"))
+        .collect();
+    (!lines.is_empty()).then(|| {
+        format!(
+            "give {} in place of a `unit` in `[time]` of the map (`--columns MAP.toml`)",
+            lines.join(" or ")
+        )
+    })
 }
 
 /// Remedy for a value that is no number and may be missing, in the row of this number from 0.

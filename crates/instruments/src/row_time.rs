@@ -49,11 +49,11 @@ impl<'a> RowTime<'a> {
                     ),
                     None => (
                         "a date and time of RFC 3339, as 2026-03-01T12:00:00.5Z".to_owned(),
-                        match cells[0] {
-                            Cell::Text(text) => remedy::of_time(self.format, text),
-                            _ => None,
-                        }
-                        .unwrap_or_else(|| "give its `format` in `[time]` of the map".to_owned()),
+                        joined(cells)
+                            .and_then(|text| remedy::of_time(self.format, &text))
+                            .unwrap_or_else(|| {
+                                "give its `format` in `[time]` of the map".to_owned()
+                            }),
                     ),
                 };
                 fault(0, expected, advice)
@@ -85,12 +85,17 @@ impl<'a> RowTime<'a> {
 
 /// The date and time of cells that are joined by blanks.
 fn date(dates: &mut DateTimes, cells: &[Cell<'_>]) -> Option<f64> {
+    dates.seconds(&joined(cells)?)
+}
+
+/// The text of cells that are joined by blanks.
+fn joined(cells: &[Cell<'_>]) -> Option<String> {
     let texts = cells.iter().map(|cell| match cell {
         Cell::Text(text) => Some((*text).to_owned()),
         Cell::Number(value) => Some(value.to_string()),
         Cell::Seconds(_) | Cell::Missing => None,
     });
-    dates.seconds(&texts.collect::<Option<Vec<String>>>()?.join(" "))
+    Some(texts.collect::<Option<Vec<String>>>()?.join(" "))
 }
 
 fn fault(column: usize, expected: String, advice: String) -> Fault {

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use gyrocal_record::{Record, open_content};
 
-use crate::cell::{Cell, TakeCells, unfit};
+use crate::cell::{Cell, TakeCells, Wanted, unfit};
 use crate::description::Description;
 use crate::error::InstrumentError;
 use crate::file_format::{FileFormat, Only};
@@ -80,14 +80,16 @@ impl TypedFile {
         }
     }
 
-    /// The columns `names`, all numbers finite, and behind them the time of each row \[s\] if it has columns.
+    /// Some columns, all numbers finite but those that may be missing, and behind them the time of each row \[s\] if it
+    /// has columns.
     pub(crate) fn columns(
         self,
         path: &Path,
         format: &FileFormat,
-        names: &[&str],
+        wanted: &Wanted<'_>,
         mut time: RowTime<'_>,
     ) -> Result<Vec<Vec<f64>>, InstrumentError> {
+        let names = wanted.names;
         let mut all = names.to_vec();
         all.extend(time.names());
         let mut values = vec![Vec::new(); all.len().min(names.len() + 1)];
@@ -95,13 +97,16 @@ impl TypedFile {
         self.for_each(path, &all, format.only.as_ref(), &mut |cells| {
             let (cells, times) = cells.split_at(names.len());
             for (at, (column, cell)) in values.iter_mut().zip(cells).enumerate() {
+                let is_sparse = wanted.sparse.contains(&at);
                 let number = match cell {
+                    Cell::Text(text) if is_sparse && format.is_missing(text) => Some(f64::NAN),
                     Cell::Text(text) => format.decimal.number(text),
                     Cell::Number(value) => Some(*value),
                     Cell::Seconds(seconds) => Some(*seconds),
-                    Cell::Missing => None,
+                    Cell::Missing => is_sparse.then_some(f64::NAN),
                 };
-                let Some(number) = number.filter(|value| value.is_finite()) else {
+                let is_one = |value: &f64| value.is_finite() || is_sparse && value.is_nan();
+                let Some(number) = number.filter(is_one) else {
                     return Err(unfit(
                         &format!("{cell} in the column `{}` of row {}", names[at], row + 1),
                         "a finite number",
@@ -187,7 +192,8 @@ fn not_built_in(what: &str, feature: &str) -> InstrumentError {
         &format!("a file of {what}"),
         &format!("text, as this program was built without {what}"),
         &format!(
-            "build it with `cargo install gyrocal-cli --features {feature}`, or write the log as CSV"
+            "in a clone of its repository `cargo install --locked --path crates/cli --features {feature}` builds it with \
+             {what}; or write the log as CSV"
         ),
     )
 }

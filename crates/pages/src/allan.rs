@@ -8,9 +8,9 @@ use gyrocal_record::Manifest;
 use gyrocal_statistics::allan::NoiseFit;
 use gyrocal_statistics::format;
 
-use crate::origin::{file_name, origin};
+use crate::origin::{file_name, part};
 use crate::panels::line;
-use crate::words::section;
+use crate::words::{listed, section};
 
 /// The page of Allan deviations; `clock` is what there is to tell of the clock of the log.
 #[must_use]
@@ -48,13 +48,12 @@ pub fn of_allan(manifest: &Manifest, report: &AllanReport, clock: Option<&str>) 
     let lead = format!("{estimator}, at each averaging time.");
     let points = section("points", "Tables", &lead, points.collect());
     let names: Vec<&str> = report.columns.iter().map(|column| &*column.name).collect();
-    Part {
-        name: file_name(manifest, 0, "log"),
-        size: crate::words::listed(&names),
-        first: screen::first(report, clock),
-        sections: vec![deviations, parts, points],
-        origin: origin(manifest),
-    }
+    let (name, size) = (file_name(manifest, 0, "log"), listed(&names));
+    let (first, sections) = (
+        screen::first(report, clock),
+        vec![deviations, parts, points],
+    );
+    part(manifest, name, size, first, sections)
 }
 
 fn chart(report: &AllanReport) -> Chart {

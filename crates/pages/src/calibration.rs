@@ -9,7 +9,7 @@ use gyrocal_words::{calibration, calibration_screen};
 use crate::diagnosis::coefficients;
 use crate::diagnosis::open_loop::{self, Simulated};
 use crate::error::PageError;
-use crate::origin::{file_name, origin};
+use crate::origin::{file_name, part};
 use crate::panels;
 use crate::words::{listed, section};
 
@@ -43,20 +43,13 @@ pub fn of_calibration(
     let lead = "Records, verdict with the tests that it rests on, what the records determine, noise, site.";
     let items = calibration(report).into_iter().map(Item::Words).collect();
     sections.push(section("words", "In words", lead, items));
-    Ok(Part {
-        name: match report.records.len() {
-            0 | 1 => file_name(&report.manifest, 0, "record"),
-            count => format!(
-                "{} and {} further records",
-                file_name(&report.manifest, 0, "record"),
-                count - 1
-            ),
-        },
-        size: format!("{} rows used", report.rows),
-        first: calibration_screen(report),
-        sections,
-        origin: origin(&report.manifest),
-    })
+    let (manifest, first) = (&report.manifest, calibration_screen(report));
+    let mut name = file_name(manifest, 0, "record");
+    if let more @ 1.. = report.records.len().saturating_sub(1) {
+        name += &format!(" and {more} further records");
+    }
+    let size = format!("{} rows used", report.rows);
+    Ok(part(manifest, name, size, first, sections))
 }
 
 /// The sections over time of a record; of several with its number in their anchors.

@@ -5,8 +5,9 @@ mod screen;
 use gyrocal_document::{List, Part, Section, Table};
 use gyrocal_evaluation::{CellReport, CharacteriseReport, Characteristic};
 use gyrocal_statistics::Proportion;
+use gyrocal_words::counted;
 
-use crate::origin::origin;
+use crate::origin::part;
 use crate::words::section;
 
 /// Failed records of a cell that are listed; the result for programs has all.
@@ -20,13 +21,9 @@ pub fn of_characterise(report: &CharacteriseReport) -> Part {
     sections.extend(families(cells));
     sections.extend(comparison(cells));
     sections.extend(failures(cells));
-    Part {
-        name: "operating characteristics".to_owned(),
-        size: gyrocal_words::counted(cells.len(), "cell"),
-        first: screen::first(cells),
-        sections,
-        origin: origin(&report.manifest),
-    }
+    let name = "operating characteristics".to_owned();
+    let (size, first) = (counted(cells.len(), "cell"), screen::first(cells));
+    part(&report.manifest, name, size, first, sections)
 }
 
 fn failures(reports: &[CellReport]) -> Option<Section> {
@@ -141,8 +138,9 @@ fn holds(figure: &Characteristic) -> &'static str {
 }
 
 fn target(figure: &Characteristic) -> String {
-    let target = figure.target;
-    target.map_or_else(String::new, |target| target.to_string())
+    figure
+        .target
+        .map_or_else(String::new, |target| target.to_string())
 }
 
 fn interval(figure: &Characteristic) -> String {

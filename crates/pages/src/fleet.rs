@@ -5,7 +5,7 @@ use gyrocal_fleet::{FleetResult, prose};
 use gyrocal_statistics::format;
 use gyrocal_words::counted;
 
-use crate::origin::origin;
+use crate::origin::part;
 use crate::words::section;
 
 /// Units of a coefficient that are shown as bars.
@@ -55,17 +55,10 @@ pub fn of_fleet(fleet: &FleetResult) -> Part {
     let lead = "All that the fleet shows.";
     let items = prose::all(fleet).into_iter().map(Item::Words).collect();
     sections.push(section("words", "In words", lead, items));
-    Part {
-        name: "fleet".to_owned(),
-        size: format!(
-            "{}, {}",
-            counted(fleet.units, "unit"),
-            counted(fleet.records, "record")
-        ),
-        first: prose::first_screen(fleet),
-        sections,
-        origin: origin(&fleet.manifest),
-    }
+    let units = counted(fleet.units, "unit");
+    let size = format!("{units}, {}", counted(fleet.records, "record"));
+    let (name, first) = ("fleet".to_owned(), prose::first_screen(fleet));
+    part(&fleet.manifest, name, size, first, sections)
 }
 
 fn evidence(fleet: &FleetResult) -> Bars {

@@ -8,7 +8,7 @@ use gyrocal_evaluation::{
 };
 use gyrocal_statistics::format;
 
-use crate::origin::{file_name, origin};
+use crate::origin::{file_name, part};
 use crate::words::section;
 
 /// Failed runs that are listed; the result for programs has all.
@@ -43,13 +43,9 @@ pub fn of_monte_carlo(report: &MonteCarloReport) -> Part {
     let coefficients = section("coefficients", "Coefficients", lead, items);
     let mut sections = vec![coefficients, consistency(summary)];
     sections.extend(failures(summary));
-    Part {
-        name: file_name(&report.manifest, 0, "scenario"),
-        size: seeds(report),
-        first: screen::first(report),
-        sections,
-        origin: origin(&report.manifest),
-    }
+    let (manifest, first) = (&report.manifest, screen::first(report));
+    let name = file_name(manifest, 0, "scenario");
+    part(manifest, name, seeds(report), first, sections)
 }
 
 fn seeds(report: &MonteCarloReport) -> String {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use gyrocal_document::{Fact, Origin, OriginFile};
+use gyrocal_document::{Fact, Origin, OriginFile, Part, Screen, Section};
 use gyrocal_record::{Input, Manifest};
 use gyrocal_words::counted;
 
@@ -23,7 +23,7 @@ const FIRST: [&str; 9] = [
 const IN_FOOT: usize = 4;
 
 /// Program, command, files and identification of a manifest.
-pub(crate) fn origin(manifest: &Manifest) -> Origin {
+fn origin(manifest: &Manifest) -> Origin {
     let program = format!("{} {}", manifest.program, manifest.version);
     let mut facts: BTreeMap<(usize, &str), Vec<&str>> = BTreeMap::new();
     for (key, value) in manifest.inputs.iter().flat_map(|one| &one.identification) {
@@ -65,6 +65,23 @@ pub(crate) fn origin(manifest: &Manifest) -> Origin {
                 sha256: input.sha256.clone(),
             })
             .collect(),
+    }
+}
+
+/// The page of an answer: name and size of what was examined, its first screen and its sections.
+pub(crate) fn part(
+    manifest: &Manifest,
+    name: String,
+    size: String,
+    first: Screen,
+    sections: Vec<Section>,
+) -> Part {
+    Part {
+        name,
+        size,
+        first,
+        sections,
+        origin: origin(manifest),
     }
 }
 

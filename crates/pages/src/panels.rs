@@ -92,9 +92,14 @@ pub(crate) fn two_sigmas(
     Band::new(label, tint, [edge(-1.0), edge(1.0)])
 }
 
-/// Correlations at the lags from one on.
-pub(crate) fn correlation(name: String, note: String, half_width: f64, lines: Vec<Line>) -> Panel {
-    let lags = lines.first().map_or(0, |line| line.values.len());
+/// Correlations of both models at the lags from one on.
+pub(crate) fn correlation(
+    name: String,
+    note: String,
+    half_width: f64,
+    (nominal, extended): (Vec<f64>, Option<Vec<f64>>),
+) -> Panel {
+    let lags = nominal.len();
     Panel {
         name,
         note: note.replace('-', "−"),
@@ -103,21 +108,33 @@ pub(crate) fn correlation(name: String, note: String, half_width: f64, lines: Ve
             "95 % band of white innovations",
             &vec![half_width; lags],
         )],
-        lines,
+        lines: of_models(nominal, extended),
         no_gaps: true,
         ..Panel::default()
     }
 }
 
-/// Autocorrelations over rows; the counts are those outside of the band, and all.
-pub(crate) fn correlations(
-    [nominal, total]: [usize; 2],
-    extended: Option<usize>,
-    panels: Vec<Panel>,
-) -> Chart {
-    let of_models = extended.map_or_else(String::new, |extended| {
+/// Autocorrelations over rows, with the counts of those outside of the band, and of all.
+pub(crate) fn correlations(panels: Vec<Panel>) -> Chart {
+    let of = |model: &'static str| {
+        let lines = panels
+            .iter()
+            .flat_map(|panel| panel.lines.iter().zip(&panel.bands));
+        let own = lines.filter(move |(line, _)| line.label == model);
+        own.flat_map(|(line, band)| line.values.iter().zip(&band.upper))
+    };
+    let outside = |model| {
+        of(model)
+            .filter(|(value, half)| value.abs() > **half)
+            .count()
+    };
+    let (nominal, known) = (outside(NOMINAL), of(NOMINAL));
+    let total = known.filter(|(value, _)| !value.is_nan()).count();
+    let of_models = of(EXTENDED).next().map(|_| {
+        let extended = outside(EXTENDED);
         format!(" for the nominal model, {extended} for the extended one")
     });
+    let of_models = of_models.unwrap_or_default();
     let by_chance = total / 20;
     Chart {
         title: format!("{nominal} of {total} autocorrelations outside the 95 % band{of_models}"),
@@ -126,8 +143,8 @@ pub(crate) fn correlations(
         abscissa_unit: "rows".to_owned(),
         quantity: "correlation".to_owned(),
         same_scale: true,
+        columns: panels.len().clamp(1, COLUMNS),
         panels,
-        columns: 3,
         height_px: 190,
         ..Chart::default()
     }

@@ -2,10 +2,9 @@
 
 use gyrocal_design::{AttitudeOf, PlanResult, Proposal, prose, tables};
 use gyrocal_document::{Bar, BarGroup, Bars, Item, Part, Tint};
-use gyrocal_statistics::format;
-use gyrocal_words::size;
+use gyrocal_words::{hours, size};
 
-use crate::origin::{origin, record_name};
+use crate::origin::{part, record_name};
 use crate::words::section;
 
 /// The page of a plan.
@@ -23,13 +22,10 @@ pub fn of_plan(plan: &PlanResult) -> Part {
     let lead = "What is known, the recommended run, and what it is expected to tell.";
     let items = prose(plan).into_iter().map(Item::Words).collect();
     sections.push(section("words", "In words", lead, items));
-    Part {
-        name: record_name(&plan.manifest, plan.records.len()),
-        size: size(plan.record.rows, plan.record.duration_s),
-        first: gyrocal_design::first_screen(plan),
-        sections,
-        origin: origin(&plan.manifest),
-    }
+    let (manifest, first) = (&plan.manifest, gyrocal_design::first_screen(plan));
+    let name = record_name(manifest, plan.records.len());
+    let size = size(plan.record.rows, plan.record.duration_s);
+    part(manifest, name, size, first, sections)
 }
 
 fn attitude(plan: &PlanResult, proposal: &Proposal) -> String {
@@ -43,14 +39,14 @@ fn attitude(plan: &PlanResult, proposal: &Proposal) -> String {
     format!("{body} angles {x:.0}°, {y:.0}°, {z:.0}°").replace('-', "−")
 }
 
-fn hours(proposal: &Proposal) -> String {
-    format!("{} h", format::short(proposal.duration_s / 3600.0, 3))
-}
-
 /// Ratio of the sigmas of each proposal.
 fn proposals(plan: &PlanResult) -> Bars {
     let bar = |proposal: &Proposal, tint: Tint| Bar {
-        label: format!("{}, {}", attitude(plan, proposal), hours(proposal)),
+        label: format!(
+            "{}, {}",
+            attitude(plan, proposal),
+            hours(proposal.duration_s)
+        ),
         value: 100.0 * proposal.outlook.sigma_ratio,
         tint,
         note: match proposal.outlook.sets.len() {

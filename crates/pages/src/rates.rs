@@ -8,7 +8,7 @@ use gyrocal_record::{Input, Manifest};
 use gyrocal_statistics::{NORMAL_97_5, format};
 
 use crate::bad_samples;
-use crate::origin::{file_name, named, origin};
+use crate::origin::{file_name, named, part};
 use crate::words::section;
 
 /// The page of gyro outputs in the rate domain. The last file of the manifest describes the logs before it;
@@ -19,13 +19,8 @@ pub fn of_rates(manifest: &Manifest, report: &RateReport, clocks: &[String]) -> 
     let logs = inputs.split_last().map_or(&[][..], |(_, logs)| logs);
     let mut sections = vec![means(logs, report, clocks)];
     sections.extend(report.gyros.iter().map(|gyro| of_gyro(gyro, logs.len())));
-    Part {
-        name: file_name(manifest, 0, "log"),
-        size: named(logs),
-        first: screen::first(logs, report),
-        sections,
-        origin: origin(manifest),
-    }
+    let (name, first) = (file_name(manifest, 0, "log"), screen::first(logs, report));
+    part(manifest, name, named(logs), first, sections)
 }
 
 fn means(logs: &[Input], report: &RateReport, clocks: &[String]) -> Section {

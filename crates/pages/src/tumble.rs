@@ -10,8 +10,9 @@ use gyrocal_instruments::multi_position::{
 };
 use gyrocal_record::Manifest;
 use gyrocal_statistics::format;
+use gyrocal_words::joined;
 
-use crate::origin::{file_name, origin};
+use crate::origin::{file_name, part};
 use crate::words::section;
 
 /// A multi-position test.
@@ -41,13 +42,9 @@ pub fn of_tumble(answer: &TumbleAnswer<'_>) -> Part {
     let mut sections = vec![residual, terms(answer, report), laws(answer, report)];
     sections.extend(gain(answer, report));
     sections.push(sensors::section_of(answer));
-    Part {
-        name: file_name(answer.manifest, 0, "log"),
-        size: format!("{} static stops", answer.prepared.stops.len()),
-        first: screen::first(answer),
-        sections,
-        origin: origin(answer.manifest),
-    }
+    let name = file_name(answer.manifest, 0, "log");
+    let size = format!("{} static stops", answer.prepared.stops.len());
+    part(answer.manifest, name, size, screen::first(answer), sections)
 }
 
 fn no_term(answer: &TumbleAnswer<'_>, report: &MultiPositionReport) -> Item {
@@ -95,10 +92,14 @@ fn terms(answer: &TumbleAnswer<'_>, report: &MultiPositionReport) -> Section {
 
 /// What else a term may be.
 fn rivals(finding: &Finding) -> String {
+    let effect = &finding.effect;
     let rivals = finding.alternatives.iter();
     let rivals =
         rivals.map(|one| format!("{} ({:.1} nats)", one.effect, one.log_likelihood_deficit));
-    let mut text = alternatives(&finding.effect, &rivals.collect::<Vec<_>>());
+    let mut text = match &*joined(rivals, ", ") {
+        "" => format!("{effect}: no alternative in the catalogue"),
+        names => format!("{effect}: alternatives: {names}"),
+    };
     if let Some(nearest) = &finding.nearest_ruled_out {
         text += &format!(
             "; nearest excluded term: {} ({:.1} nats)",
@@ -115,13 +116,6 @@ fn rivals(finding: &Finding) -> String {
         text += &format!("; as a misalignment of the accelerometers: {angle:.1} rad");
     }
     text
-}
-
-fn alternatives(effect: &str, names: &[String]) -> String {
-    match names {
-        [] => format!("{effect}: no alternative in the catalogue"),
-        names => format!("{effect}: alternatives: {}", names.join(", ")),
-    }
 }
 
 /// Nominal and extended law of each gyro.

@@ -6,6 +6,7 @@ use gyrocal_diagnosis::{
 };
 use gyrocal_document::{Item, Screen, Section, Standing, Table};
 use gyrocal_statistics::format;
+use gyrocal_words::joined;
 
 use crate::words::section;
 
@@ -17,7 +18,7 @@ pub fn uncertainty_screen(found: &UncertaintyResult) -> Screen {
         Some(spread) => format!("coefficients over {} runs", spread.runs),
     };
     let mut screen = Screen::new(Standing::Neutral, "UNCERTAINTY", what);
-    if found.spread.is_none() {
+    let Some(spread) = &found.spread else {
         for one in found.records.iter().flat_map(|record| &record.coefficients) {
             let sources = by_source(one);
             let largest = sources.iter().max_by(|a, b| a.3.total_cmp(&b.3));
@@ -30,26 +31,24 @@ pub fn uncertainty_screen(found: &UncertaintyResult) -> Screen {
             );
             screen.fact(&one.name, words);
         }
+        return screen;
+    };
+    // Intervals of each run are in the tables: those of many do not fit on a screen.
+    for one in &spread.coefficients {
+        let [mean, expected] = format::estimate(one.mean, one.expected);
+        let words = format!(
+            "mean {mean} {}, deviation {} ({expected} expected)",
+            one.unit,
+            format::short(one.standard_deviation, 2),
+        );
+        screen.fact(&one.name, words);
     }
-    if let Some(spread) = &found.spread {
-        // Intervals of each run are in the tables: those of many do not fit on a screen.
-        for one in &spread.coefficients {
-            let [mean, expected] = format::estimate(one.mean, one.expected);
-            let words = format!(
-                "mean {mean} {}, deviation {} ({expected} expected)",
-                one.unit,
-                format::short(one.standard_deviation, 2),
-            );
-            screen.fact(&one.name, words);
-        }
-        let larger = spread.coefficients.iter().filter(|one| one.is_larger);
-        let names: Vec<&str> = larger.map(|one| one.name.as_str()).collect();
-        let words = match names.is_empty() {
-            true => "consistent with the uncertainties".to_owned(),
-            false => format!("larger than the uncertainties: {}", names.join(", ")),
-        };
-        screen.fact("scatter", format!("of {} runs {words}", spread.runs));
-    }
+    let larger = spread.coefficients.iter().filter(|one| one.is_larger);
+    let words = match &*joined(larger.map(|one| &one.name), ", ") {
+        "" => "consistent with the uncertainties".to_owned(),
+        names => format!("larger than the uncertainties: {names}"),
+    };
+    screen.fact("scatter", format!("of {} runs {words}", spread.runs));
     screen
 }
 
@@ -138,7 +137,7 @@ fn contribution_rows(one: &CoefficientUncertainty) -> Vec<[String; 6]> {
     let undeclared = site.map(|one| [one.name(), "B", one.distribution(), NOT_DECLARED]);
     let undeclared = undeclared.map(|line| line.map(str::to_owned));
     let lines = told.iter().map(|(source, kind, distribution, standard)| {
-        let standard = format::significant(*standard, 2);
+        let standard = two_digits(*standard);
         let [source, kind, distribution] =
             [*source, kind.letter(), *distribution].map(str::to_owned);
         [source, kind, distribution, standard]
@@ -149,6 +148,17 @@ fn contribution_rows(one: &CoefficientUncertainty) -> Vec<[String; 6]> {
         [name, source, kind, distribution, standard, unit]
     });
     rows.collect()
+}
+
+/// A standard uncertainty with two significant digits.
+fn two_digits(uncertainty: f64) -> String {
+    match uncertainty < 100.0 {
+        true => format::significant(uncertainty, 2),
+        false => {
+            let [_, rounded] = format::estimate(0.0, uncertainty);
+            rounded
+        }
+    }
 }
 
 /// Conditions of the test.

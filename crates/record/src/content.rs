@@ -19,10 +19,11 @@ use crate::error::{Error, unreadable};
 const GZIP: &[u8] = &[0x1f, 0x8b];
 const ZSTANDARD: &[u8] = &[0x28, 0xb5, 0x2f, 0xfd];
 
-/// Sizes above which a compressed file is no measurement but a way to fill the memory: content of this size, that
-/// is this many times larger than the file. Records come to 3 to 10 times, one that repeats a reading to some ten.
-const LARGE_MIB: u64 = 64;
-const LARGE_RATIO: u64 = 100;
+/// Sizes above which a compressed file is no measurement but a way to fill the memory: content of so many MiB, that
+/// is [`LARGE_RATIO`] times larger than the file. Records come to 3 to 10 times, one that repeats a reading to some ten.
+pub const LARGE_MIB: u64 = 64;
+/// How many times larger than the file.
+pub const LARGE_RATIO: u64 = 100;
 
 /// What this process knows of the files that it has opened.
 static OPENED: Mutex<Opened> = Mutex::new(Opened {

@@ -93,7 +93,8 @@ pub use bench::{Bench, Prior};
 pub use bound::Bound;
 pub use clock::{ClockFault, UNNAMED, restarts};
 pub use content::{
-    digest_of_text, is_encoding, keep_streams, open_content, open_text, read_content,
+    LARGE_MIB, LARGE_RATIO, digest_of_text, is_encoding, keep_streams, open_content, open_text,
+    read_content,
 };
 pub use document::Document;
 pub use error::{Error, InputError, InputErrorKind};

@@ -106,8 +106,8 @@ impl ResultTable {
     #[cfg(not(feature = "parquet"))]
     fn to_parquet(&self) -> io::Result<Vec<u8>> {
         Err(io::Error::other(
-            "this program was built without Parquet: build it with `--features parquet`, or give the file \
-             a name that ends in .csv",
+            "this program was built without Parquet: `cargo install --locked --path crates/cli --features parquet` in a \
+             clone of its repository builds it with it; or give the file a name that ends in .csv",
         ))
     }
 

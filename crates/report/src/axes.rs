@@ -160,7 +160,8 @@ impl Axes {
             // A title may be somewhat longer than its frame is high.
             let label = text::fit(&self.y.title, SMALL, false, frame.height() + 24.0);
             let style = TextStyle::new(SMALL, Align::Middle).colour(INK);
-            canvas.text(&label, point, style.vertical());
+            let vertical = true;
+            canvas.text(&label, point, TextStyle { vertical, ..style });
         }
     }
 

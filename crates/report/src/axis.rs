@@ -6,8 +6,7 @@ use crate::span::Span;
 /// One axis: its span, ticks and title.
 #[derive(Clone, Debug)]
 pub(crate) struct Axis {
-    lo: f64,
-    hi: f64,
+    span: Span,
     logarithmic: bool,
     /// Values of labelled ticks, and their labels.
     pub ticks: Vec<(f64, String)>,
@@ -80,8 +79,7 @@ impl Axis {
     /// A linear scale without ticks and title.
     pub(crate) fn bare(span: Span) -> Self {
         Self {
-            lo: span.lo,
-            hi: span.hi,
+            span,
             logarithmic: false,
             ticks: Vec::new(),
             minor: Vec::new(),
@@ -92,14 +90,11 @@ impl Axis {
     /// Position of a value: 0 at the start of the axis, 1 at its end. Not a number if the value
     /// is not one, or has no logarithm.
     pub(crate) fn at(&self, value: f64) -> f64 {
-        if self.logarithmic {
-            if value > 0.0 {
-                (value / self.lo).ln() / (self.hi / self.lo).ln()
-            } else {
-                f64::NAN
-            }
-        } else {
-            (value - self.lo) / (self.hi - self.lo)
+        let Span { lo, hi } = self.span;
+        match self.logarithmic {
+            true if value > 0.0 => (value / lo).ln() / (hi / lo).ln(),
+            true => f64::NAN,
+            false => (value - lo) / (hi - lo),
         }
     }
 }

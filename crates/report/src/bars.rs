@@ -4,7 +4,7 @@ use crate::axis::Axis;
 use crate::canvas::{Align, Canvas, LineStyle, TextStyle};
 use crate::check;
 use crate::error::Error;
-use crate::figure::{Legend, figure};
+use crate::figure::{Legend, Sample, figure};
 use crate::geometry::Rect;
 use crate::number::short;
 use crate::picture::Picture;
@@ -29,10 +29,10 @@ impl Picture for Bars {
         }
         let bars: usize = self.groups.iter().map(|group| group.bars.len()).sum();
         let height = PITCH * bars as f64 + HEAD * self.groups.len() as f64 + BELOW;
+        let dashed = || Sample::Line(LineStyle::dashed(LEVEL, THIN));
         let threshold = self.threshold.iter();
-        let legend: Vec<Legend> = threshold
-            .map(|(_, name)| Legend::line(LineStyle::dashed(LEVEL, THIN), name.as_str()))
-            .collect();
+        let legend = threshold.map(|(_, name)| Legend::new(dashed(), name));
+        let legend: Vec<Legend> = legend.collect();
         Ok(figure(
             &self.title,
             &[&self.omitted, source],
@@ -79,11 +79,8 @@ fn draw(bars: &Bars, canvas: &mut Canvas, body: Rect) {
             let at = (frame.left - 6.0, middle);
             canvas.text(&name, at, TextStyle::new(SMALL, Align::End));
             let end = x_of(if bar.value.is_nan() { 0.0 } else { bar.value });
-            let corners = (
-                (x_of(0.0).min(end), y + 3.0),
-                (x_of(0.0).max(end), y + PITCH - 3.0),
-            );
-            canvas.rect(corners.0, corners.1, colour(bar.tint), 1.0);
+            let [corner, opposite] = [(x_of(0.0), y + 3.0), (end, y + PITCH - 3.0)];
+            canvas.rect(corner, opposite, colour(bar.tint), 1.0);
             let number = match bar.value.is_nan() {
                 true => "not determined".to_owned(),
                 false => short(bar.value, 3),

@@ -74,13 +74,6 @@ impl TextStyle {
     pub(crate) fn bold(self) -> Self {
         Self { bold: true, ..self }
     }
-
-    pub(crate) fn vertical(self) -> Self {
-        Self {
-            vertical: true,
-            ..self
-        }
-    }
 }
 
 /// A white canvas.

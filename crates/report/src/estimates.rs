@@ -5,7 +5,7 @@ use crate::axis::Axis;
 use crate::canvas::{Align, Canvas, LineStyle, TextStyle};
 use crate::check;
 use crate::error::Error;
-use crate::figure::{Legend, figure};
+use crate::figure::{Legend, Sample, figure};
 use crate::geometry::Rect;
 use crate::layout::Layout;
 use crate::picture::Picture;
@@ -30,7 +30,10 @@ impl Picture for Estimates {
         let widths = names.map(|(name, _)| text::width_px(name, SMALL, false));
         let names_px = widths.fold(20.0, f64::max).min(NAMES_PX);
         let panel_px = ROW_PX * self.models.len() as f64 + 10.0;
-        let layout = Layout::new(IN_A_ROW, self.rows.len(), panel_px).with_left(34.0);
+        let layout = Layout {
+            left_px: 34.0,
+            ..Layout::new(IN_A_ROW, self.rows.len(), panel_px)
+        };
         let remarks = match &*self.note_head {
             "" => String::new(),
             head => format!("At the right above each panel: {head}."),
@@ -52,27 +55,22 @@ fn checked(estimates: &Estimates) -> Result<(), Error> {
     check::non_empty("the list of models", &estimates.models)?;
     check::non_empty("the list of quantities", &estimates.rows)?;
     for row in &estimates.rows {
-        if row.values.len() != estimates.models.len() {
-            return Err(Error::UnequalLengths {
-                what: format!("the list of estimates of {}", row.name),
-                found: row.values.len(),
-                against: "the models".to_owned(),
-                expected: estimates.models.len(),
-            });
-        }
-        for one in &row.values {
-            let what = || format!("an estimate of {}", row.name);
-            check::not_infinite(what, &[one.value, one.sigma])?;
-        }
+        let of = |part: fn(&ValueWithSigma) -> f64| -> Vec<f64> {
+            row.values.iter().map(part).collect()
+        };
+        let what = || format!("the list of estimates of {}", row.name);
+        let models = ("the models", estimates.models.len());
+        check::column(what, &of(|one| one.value), models)?;
+        check::not_infinite(what, &of(|one| one.sigma))?;
     }
     Ok(())
 }
 
 fn legend(estimates: &Estimates) -> Vec<Legend> {
     let models = estimates.models.iter();
-    let dots = models.map(|(name, tint)| Legend::dot(colour(*tint), name.as_str()));
-    let bar = LineStyle::solid(BLACK, DATA);
-    dots.chain([Legend::line(bar, "±2σ (95%)")]).collect()
+    let dots = models.map(|(name, tint)| Legend::new(Sample::Dot(colour(*tint)), name));
+    let bar = Sample::Line(LineStyle::solid(BLACK, DATA));
+    dots.chain([Legend::new(bar, "±2σ (95%)")]).collect()
 }
 
 fn draw(estimates: &Estimates, canvas: &mut Canvas, layout: Layout, body: Rect, names_px: f64) {
@@ -131,8 +129,8 @@ fn height_of(estimates: &Estimates, place: usize) -> f64 {
     estimates.models.len() as f64 - 1.0 - place as f64
 }
 
-/// Both ends of an interval; without a sigma the value itself.
-fn ends(one: &ValueWithSigma) -> [f64; 2] {
+/// Both ends of an interval of two standard deviations each way; without a sigma the value itself.
+pub(crate) fn ends(one: &ValueWithSigma) -> [f64; 2] {
     let half = match one.sigma.is_nan() {
         true => 0.0,
         false => 2.0 * one.sigma,

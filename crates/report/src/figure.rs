@@ -21,32 +21,17 @@ pub(crate) struct Legend {
     label: String,
 }
 
-enum Sample {
+/// What stands before the name of an entry.
+pub(crate) enum Sample {
     Line(LineStyle),
     Area(Colour, f64),
     Dot(Colour),
 }
 
 impl Legend {
-    pub(crate) fn line(style: LineStyle, label: impl Into<String>) -> Self {
-        Self {
-            sample: Sample::Line(style),
-            label: label.into(),
-        }
-    }
-
-    pub(crate) fn area(colour: Colour, opacity: f64, label: impl Into<String>) -> Self {
-        Self {
-            sample: Sample::Area(colour, opacity),
-            label: label.into(),
-        }
-    }
-
-    pub(crate) fn dot(colour: Colour, label: impl Into<String>) -> Self {
-        Self {
-            sample: Sample::Dot(colour),
-            label: label.into(),
-        }
+    pub(crate) fn new(sample: Sample, label: &str) -> Self {
+        let label = label.to_owned();
+        Self { sample, label }
     }
 
     /// Draws the entry with the middle of its left edge at a point.

@@ -24,11 +24,6 @@ impl Layout {
         }
     }
 
-    /// With other room left of each panel, px.
-    pub(crate) fn with_left(self, left_px: f64) -> Self {
-        Self { left_px, ..self }
-    }
-
     /// Height of all panels, px.
     pub(crate) fn height(self) -> f64 {
         let rows = self.panels.div_ceil(self.columns) as f64;

@@ -115,7 +115,7 @@ mod tests {
             with_uncertainty(-1.234e-5, 5.6e-8),
             "(−1.2340 ± 0.0056)·10⁻⁵"
         );
-        assert_eq!(with_uncertainty(12_345.678, 345.6), "12346 ± 346");
+        assert_eq!(with_uncertainty(12_345.678, 345.6), "12350 ± 350");
         assert_eq!(count(4320), "4320");
         assert_eq!(count(1_000_000), "1\u{A0}000\u{A0}000");
     }

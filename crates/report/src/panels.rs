@@ -4,7 +4,7 @@ use crate::axes::{Axes, Labels};
 use crate::axis::Axis;
 use crate::canvas::{Align, Canvas, LineStyle, TextStyle};
 use crate::error::Error;
-use crate::figure::{Legend, figure};
+use crate::figure::{Legend, Sample, figure};
 use crate::geometry::Rect;
 use crate::layout::Layout;
 use crate::page::chart::{check, halves, note};
@@ -44,22 +44,20 @@ impl Picture for Chart {
 fn legend(chart: &Chart) -> Vec<Legend> {
     let bands = chart.panels.iter().flat_map(|panel| &panel.bands);
     let bands = bands.map(|band| {
-        let entry = Legend::area(colour(band.tint), BAND_OPACITY, band.label.as_str());
-        (&band.label, entry)
+        let area = Sample::Area(colour(band.tint), BAND_OPACITY);
+        (&band.label, area)
     });
     let lines = chart.panels.iter().flat_map(|panel| &panel.lines);
-    let lines = lines.map(|line| (&line.label, legend_of(line)));
+    let lines = lines.map(|line| (&line.label, sample_of(line)));
     let levels = chart.panels.iter().flat_map(|panel| &panel.levels);
-    let levels = levels.map(|level| {
-        let entry = Legend::line(LineStyle::dashed(LEVEL, THIN), level.label.as_str());
-        (&level.label, entry)
-    });
+    let dashed = || Sample::Line(LineStyle::dashed(LEVEL, THIN));
+    let levels = levels.map(|level| (&level.label, dashed()));
     let mut shown: Vec<&String> = Vec::new();
     let mut legend = Vec::new();
-    for (label, entry) in bands.chain(lines).chain(levels) {
+    for (label, sample) in bands.chain(lines).chain(levels) {
         if !label.is_empty() && !shown.contains(&label) {
             shown.push(label);
-            legend.push(entry);
+            legend.push(Legend::new(sample, label));
         }
     }
     legend
@@ -74,22 +72,14 @@ fn draw(chart: &Chart, canvas: &mut Canvas, layout: Layout, body: Rect) {
             None => ordinates(panel, chart.logarithmic),
         })
         .collect();
-    let of_all = ordinates
-        .iter()
-        .copied()
-        .flatten()
-        .reduce(|all, one| all.with(one));
+    let whole = |spans: &[Option<Span>]| spans.iter().copied().flatten().reduce(Span::with);
+    let of_all = whole(&ordinates);
     let abscissas = chart.panels.iter().map(|panel| {
         let values = panel.abscissa.iter().copied();
         Span::of(values.filter(|value| !chart.logarithmic_abscissa || *value > 0.0))
     });
     let abscissas: Vec<Option<Span>> = abscissas.collect();
-    let linked = abscissas
-        .iter()
-        .copied()
-        .flatten()
-        .reduce(|all, one| all.with(one))
-        .filter(|_| !chart.unlinked);
+    let linked = whole(&abscissas).filter(|_| !chart.unlinked);
     for (index, panel) in chart.panels.iter().enumerate() {
         let frame = layout.frame(body, index);
         let along = linked.or(abscissas[index]);
@@ -159,16 +149,13 @@ fn width_px(line: &Line) -> f64 {
     }
 }
 
-fn legend_of(line: &Line) -> Legend {
+fn sample_of(line: &Line) -> Sample {
     let colour = colour(line.tint);
     match line.kind {
-        LineKind::Solid => {
-            let style = LineStyle::solid(colour, width_px(line).max(LEGEND_LINE));
-            Legend::line(style, line.label.as_str())
-        }
-        LineKind::Dashed => Legend::line(LineStyle::dashed(colour, THIN), line.label.as_str()),
-        LineKind::Points => Legend::dot(colour, line.label.as_str()),
-        LineKind::Bars => Legend::area(colour, 1.0, line.label.as_str()),
+        LineKind::Solid => Sample::Line(LineStyle::solid(colour, width_px(line).max(LEGEND_LINE))),
+        LineKind::Dashed => Sample::Line(LineStyle::dashed(colour, THIN)),
+        LineKind::Points => Sample::Dot(colour),
+        LineKind::Bars => Sample::Area(colour, 1.0),
     }
 }
 
@@ -192,13 +179,14 @@ fn has_data(panel: &Panel) -> bool {
 }
 
 fn draw_panel(panel: &Panel, canvas: &mut Canvas, axes: &Axes) {
+    let longest = longest_interval(&panel.abscissa, panel.no_gaps);
     for band in &panel.bands {
         let edges = (&*band.lower, &*band.upper);
         let colour = colour(band.tint);
-        axes.band(canvas, &panel.abscissa, edges, colour, longest(panel));
+        axes.band(canvas, &panel.abscissa, edges, colour, longest);
     }
     for line in &panel.lines {
-        draw_line(panel, canvas, axes, line);
+        draw_line(panel, canvas, axes, (line, longest));
     }
     for level in &panel.levels {
         axes.horizontal_line(canvas, level.value, LineStyle::dashed(LEVEL, THIN));
@@ -216,7 +204,7 @@ fn draw_panel(panel: &Panel, canvas: &mut Canvas, axes: &Axes) {
     }
 }
 
-fn draw_line(panel: &Panel, canvas: &mut Canvas, axes: &Axes, line: &Line) {
+fn draw_line(panel: &Panel, canvas: &mut Canvas, axes: &Axes, (line, longest): (&Line, f64)) {
     let colour = colour(line.tint);
     let style = match line.kind {
         LineKind::Dashed => LineStyle::dashed(colour, THIN),
@@ -241,15 +229,7 @@ fn draw_line(panel: &Panel, canvas: &mut Canvas, axes: &Axes, line: &Line) {
                 canvas.line(&[(x, foot(axes)), (x, y)], style);
             }
         }
-        _ => axes.line(canvas, &panel.abscissa, &line.values, style, longest(panel)),
-    }
-}
-
-/// The longest interval of the abscissa that is no gap.
-fn longest(panel: &Panel) -> f64 {
-    match panel.no_gaps {
-        true => f64::INFINITY,
-        false => longest_interval(&panel.abscissa),
+        _ => axes.line(canvas, &panel.abscissa, &line.values, style, longest),
     }
 }
 

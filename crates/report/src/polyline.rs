@@ -8,8 +8,11 @@ use crate::geometry::{Point, Rect};
 const GAP_FACTOR: f64 = 4.0;
 
 /// The longest interval, in units of the abscissa, that is not a gap.
-pub(crate) fn longest_interval(abscissa: &[f64]) -> f64 {
-    GAP_FACTOR * median_interval_s(abscissa)
+pub(crate) fn longest_interval(abscissa: &[f64], no_gaps: bool) -> f64 {
+    match no_gaps {
+        true => f64::INFINITY,
+        false => GAP_FACTOR * median_interval_s(abscissa),
+    }
 }
 
 /// The lines through points, broken at missing values and at gaps, no more than four points for
@@ -94,10 +97,8 @@ struct Decimated {
 
 struct Column {
     number: i64,
-    first: (usize, Point),
-    highest: (usize, Point),
-    lowest: (usize, Point),
-    last: (usize, Point),
+    /// First, highest, lowest and last point, each with its place in the column.
+    kept: [(usize, Point); 4],
 }
 
 impl Decimated {
@@ -105,32 +106,26 @@ impl Decimated {
         let number = point.0.floor() as i64;
         match &mut self.column {
             Some(column) if column.number == number => {
-                let next = (column.last.0 + 1, point);
-                if point.1 < column.highest.1.1 {
-                    column.highest = next;
+                let [_, highest, lowest, last] = &mut column.kept;
+                let next = (last.0 + 1, point);
+                if point.1 < highest.1.1 {
+                    *highest = next;
                 }
-                if point.1 > column.lowest.1.1 {
-                    column.lowest = next;
+                if point.1 > lowest.1.1 {
+                    *lowest = next;
                 }
-                column.last = next;
+                *last = next;
             }
             _ => {
                 self.close();
-                let only = (0, point);
-                self.column = Some(Column {
-                    number,
-                    first: only,
-                    highest: only,
-                    lowest: only,
-                    last: only,
-                });
+                let kept = [(0, point); 4];
+                self.column = Some(Column { number, kept });
             }
         }
     }
 
     fn close(&mut self) {
-        if let Some(column) = self.column.take() {
-            let mut kept = [column.first, column.highest, column.lowest, column.last];
+        if let Some(Column { mut kept, .. }) = self.column.take() {
             kept.sort_by_key(|(order, _)| *order);
             let mut before = None;
             for (order, point) in kept {
@@ -221,7 +216,7 @@ mod tests {
         let time = [0.0, 1.0, 2.0, 3.0, 10.0, 11.0, 12.0, 13.0];
         let values = [0.5, 0.5, f64::NAN, 0.5, 0.5, 0.5, 0.5, 0.5];
         let points = points(Span::new(0.0, 20.0), Span::new(0.0, 1.0), &time, &values);
-        let lines = lines(FRAME, &time, &points, longest_interval(&time));
+        let lines = lines(FRAME, &time, &points, longest_interval(&time, false));
         let ends: Vec<_> = lines
             .iter()
             .map(|line| (line[0].0, line[line.len() - 1].0))

@@ -35,8 +35,8 @@ pub fn p_cell(p: f64) -> String {
     }
 }
 
-/// An estimate and its standard deviation with the decimals that show two significant digits of
-/// the latter.
+/// An estimate and its standard deviation, both rounded to the place of the second significant digit of the latter:
+/// `0.41235`, `0.00012`; `1230`, `120`.
 #[must_use]
 pub fn estimate(estimate: f64, sigma: f64) -> [String; 2] {
     // Scientific notation rounds first, so that 0.0996 counts as 0.10.
@@ -44,10 +44,12 @@ pub fn estimate(estimate: f64, sigma: f64) -> [String; 2] {
     match exponent(&scientific) {
         Some(exponent) if sigma > 0.0 && (-12..=12).contains(&exponent) => {
             let decimals = usize::try_from(1 - exponent).unwrap_or(0);
-            [
-                format!("{estimate:.decimals$}"),
-                format!("{sigma:.decimals$}"),
-            ]
+            let place = 10_f64.powi((exponent - 1).max(0));
+            [estimate, sigma].map(|value| match place > 1.0 {
+                // The sum turns a negative zero into a positive one.
+                true => format!("{:.0}", place * (value / place).round() + 0.0),
+                false => format!("{value:.decimals$}"),
+            })
         }
         _ => [format!("{estimate:e}"), scientific],
     }
@@ -141,7 +143,10 @@ mod tests {
             ((-0.287, 0.994), ["-0.29", "0.99"]),
             ((-0.287, 0.996), ["-0.3", "1.0"]),
             ((123.456, 34.56), ["123", "35"]),
-            ((123.456, 345.6), ["123", "346"]),
+            ((123.456, 345.6), ["120", "350"]),
+            ((1234.5, 123.4), ["1230", "120"]),
+            ((-3.0, 996.0), ["0", "1000"]),
+            ((12_345.678, 99.6), ["12350", "100"]),
             ((1.5, 2e-15), ["1.5e0", "2.0e-15"]),
             ((1.5, 0.0), ["1.5e0", "0.0e0"]),
             ((1.5, f64::NAN), ["1.5e0", "NaN"]),

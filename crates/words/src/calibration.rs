@@ -4,7 +4,7 @@ mod screen;
 mod tables;
 mod verdict;
 
-use gyrocal_document::{List, Words};
+use gyrocal_document::Words;
 use gyrocal_record::{
     AXES, AzimuthReport, CalibrationMethod, CalibrationReport, NoiseDifference, NoiseEstimate,
     NoiseRatio, RecordReport, RunReport, SiteReport, printable_line,
@@ -16,6 +16,7 @@ pub use verdict::calibration_verdict;
 
 use crate::diagnosis::is_correlation;
 use crate::files::joined;
+use crate::format::size;
 use crate::means::means;
 
 /// Records, verdict, what is determined, noise and site of a calibration, in reading order.
@@ -53,12 +54,8 @@ fn by_number(report: &CalibrationReport, [one, several]: [&'static str; 2]) -> &
 }
 
 fn record_line(one: &RecordReport) -> String {
-    let mut text = format!(
-        "{}: {} rows over {:.2} days",
-        printable_line(&one.record),
-        one.rows,
-        one.duration_s / 86_400.0
-    );
+    let (name, size) = (printable_line(&one.record), size(one.rows, one.duration_s));
+    let mut text = format!("{name}: {size}");
     if let Some(averaged) = &one.averaged {
         text += &format!(", {}", means(averaged));
     }
@@ -88,7 +85,7 @@ fn undetermined(report: &CalibrationReport) -> Option<Words> {
         format!("{text}: its sigma is {share} of that before the record")
     });
     let title = "Unobservable combinations, each coefficient over its prior sigma";
-    List::of(title, entries).map(Words::List)
+    Words::list(title, entries)
 }
 
 /// Attitude and noise of a record.

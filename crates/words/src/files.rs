@@ -2,21 +2,6 @@
 
 use gyrocal_record::{Input, InputRole, shell_quoted};
 
-/// `RECORD --bench BENCH` of the first two inputs of a result, as a shell reads them.
-#[must_use]
-pub fn record_and_bench(inputs: &[Input]) -> String {
-    let path = |place: usize, otherwise: &str| {
-        inputs
-            .get(place)
-            .map_or_else(|| otherwise.to_owned(), |input| argument(&input.path))
-    };
-    format!(
-        "{} --bench {}",
-        path(0, "RECORD.csv"),
-        path(1, "BENCH.toml")
-    )
-}
-
 /// A path as a shell reads it; of a stream, which is gone when the next command runs, `FILE`.
 fn argument(path: &str) -> String {
     let is_stream = ["/dev/", "/proc/"]
@@ -54,15 +39,25 @@ pub fn command_files<'a>(inputs: impl Iterator<Item = (InputRole, &'a str)> + Cl
     command
 }
 
-/// The files of a result as those of [`command_files`]; `None` of a result that does not say what its files
-/// are.
+/// The files of a result, and `further` ones, as those of [`command_files`]; of a result that does not say what its
+/// files are, its first two are a record and its bench file. Axes of a strapdown unit that it does not name have a
+/// name to fill in.
 #[must_use]
-pub fn input_files(inputs: &[Input]) -> Option<String> {
-    let known = inputs
+pub fn input_files(inputs: &[Input], is_strapdown: bool, further: &[(InputRole, &str)]) -> String {
+    let told = inputs
         .iter()
-        .filter_map(|input| Some((input.role?, input.path.as_str())));
-    let has_record = known.clone().any(|(role, _)| role == InputRole::Record);
-    has_record.then(|| command_files(known))
+        .filter_map(|one| Some((one.role?, &*one.path)));
+    let mut files: Vec<(InputRole, &str)> = told.collect();
+    let lacks = |files: &[(InputRole, &str)], role| files.iter().all(|(own, _)| *own != role);
+    if lacks(&files, InputRole::Record) {
+        let path = |place: usize, otherwise| inputs.get(place).map_or(otherwise, |one| &*one.path);
+        files.push((InputRole::Record, path(0, "RECORD.csv")));
+        files.push((InputRole::Bench, path(1, "BENCH.toml")));
+    }
+    if is_strapdown && lacks(&files, InputRole::GyroAxes) {
+        files.push((InputRole::GyroAxes, "AXES.csv"));
+    }
+    command_files(files.iter().chain(further).copied())
 }
 
 /// Names in a row, with this between any two.

@@ -23,11 +23,21 @@ pub(crate) fn short(value: f64) -> String {
 }
 
 /// A time in the unit that serves it: `0.0500 s`, `12.5 min`, `5.30 h`.
-pub(crate) fn time(seconds: f64) -> String {
+#[must_use]
+pub fn time(seconds: f64) -> String {
     match seconds {
         s if s < 120.0 => format!("{} s", format::significant(s, 3)),
         s if s < 7200.0 => format!("{} min", format::significant(s / 60.0, 3)),
         s => format!("{:.2} h", s / 3600.0),
+    }
+}
+
+/// A duration of hours: `72 h`, `12.5 h`, `1.5 h`.
+#[must_use]
+pub fn hours(seconds: f64) -> String {
+    match seconds / 3600.0 {
+        hours if hours >= 10.0 => format!("{} h", format::short(hours, 3)),
+        hours => format!("{hours:.1} h"),
     }
 }
 
@@ -39,10 +49,9 @@ pub fn size(rows: usize, duration_s: f64) -> String {
 }
 
 /// What stands in the place of a p-value that was not computed.
-pub const NO_P: &str = "p not computed for the final model";
+pub(crate) const NO_P: &str = "p not computed for the final model";
 
 /// A p-value in words.
-#[must_use]
-pub fn tested(p: Option<f64>) -> String {
+pub(crate) fn tested(p: Option<f64>) -> String {
     p.map_or_else(|| NO_P.to_owned(), format::p_value)
 }

@@ -23,5 +23,5 @@ pub use diagnosis::{
     parameter_values, ranking, residual_description, residuals, setup, shifts, sizes, tested,
     time_is_temperature, typical_size, why_not_distinguished, would_distinguish,
 };
-pub use files::{command_files, few, input_files, joined, record_and_bench};
-pub use format::{NO_P, capitalised, counted, size, tested as tested_p};
+pub use files::{command_files, few, input_files, joined};
+pub use format::{capitalised, counted, hours, size, time};

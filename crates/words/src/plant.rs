@@ -31,8 +31,9 @@ const LEAST_NONE: f64 = 0.05;
 /// The answer in sentences, the verdict first.
 #[must_use]
 pub fn all(answer: &Answer) -> Vec<String> {
-    let facts = facts(answer).into_iter().map(|(_, words)| words);
-    core::iter::once(verdict(answer)).chain(facts).collect()
+    let Screen { what, facts, .. } = first_screen(answer);
+    let facts = facts.into_iter().map(|fact| fact.words);
+    core::iter::once(what).chain(facts).collect()
 }
 
 /// The first screen: the verdict, and what the answer says after it.
@@ -48,59 +49,52 @@ pub fn first_screen(answer: &Answer) -> Screen {
         _ => (Standing::Bad, "MODEL LACKS SOMETHING"),
     };
     let mut screen = Screen::new(standing, words, verdict(answer));
-    for (label, words) in facts(answer) {
-        screen.fact(label, words);
-    }
+    facts(answer, &mut screen);
     screen
 }
 
-/// What the answer says after the verdict: sentences with what they are about.
-#[must_use]
-pub fn facts(answer: &Answer) -> Vec<(&'static str, String)> {
+/// What the answer says after the verdict.
+fn facts(answer: &Answer, screen: &mut Screen) {
     let has = answer.has_findings();
-    let mut all = Vec::new();
     let found = answer.findings.iter();
-    all.extend(found.map(|one| ("effect", finding(answer, one))));
+    screen.each("effect", found.map(|one| finding(answer, one)));
     let terms = answer.remainder.unmodelled.iter();
-    all.extend(terms.map(|one| ("unexplained", unmodelled(one))));
+    screen.each("unexplained", terms.map(unmodelled));
     let records = answer.records.iter();
-    all.extend(records.map(|one| ("record", record(one, has))));
+    screen.each("record", records.map(|one| record(one, has)));
     let horizon = over(answer.horizon_s);
-    all.extend(answer.open_loop.iter().map(|error| {
-        let off = off(error, has);
-        ("open loop", format!("Simulated{horizon}, output {off}."))
-    }));
+    let errors = answer.open_loop.iter().map(|error| off(error, has));
+    let errors = errors.map(|off| format!("Simulated{horizon}, output {off}."));
+    screen.each("open loop", errors);
     // A likelihood of noise that is not white says little of left-out parts: simulations do.
     let gains = answer.gain.iter().filter(|_| answer.path.is_empty());
-    all.extend(gains.map(|gain| ("parts", parts(gain))));
-    let left_out = path(&answer.path).into_iter();
-    all.extend(left_out.map(|words| ("left out", words)));
-    all.extend(later_record(answer).map(|words| ("later record", words)));
+    screen.each("parts", gains.map(parts));
+    screen.each("left out", path(&answer.path));
+    screen.each("later record", later_record(answer));
     let tests = answer.remainder.outputs.iter();
     let rare = tests.filter(|one| is_coloured(one));
-    all.extend(rare.map(|one| ("remainder", remainder(answer, one))));
-    let undeclared = answer.undeclared_noise.iter();
-    all.extend(undeclared.map(|one| ("noise", undeclared_noise(one))));
+    screen.each("remainder", rare.map(|one| remainder(answer, one)));
+    screen.each(
+        "noise",
+        answer.undeclared_noise.iter().map(undeclared_noise),
+    );
     if !answer.only_in_white_noise.is_empty() {
         let words = format!(
             "In white noise alone {} would be named; beside the noise above the record does not hold it.",
             answer.only_in_white_noise.join(", ")
         );
-        all.push(("noise", words));
+        screen.fact("noise", words);
     }
-    let undetermined = answer.undetermined.iter();
-    all.extend(undetermined.map(|one| ("undetermined", direction(one))));
+    screen.each("undetermined", answer.undetermined.iter().map(direction));
     if !answer.still_inputs.is_empty() {
         let words = format!(
             "Input {} never moves in this record: nothing that depends on it can be told from a \
              constant. Move it.",
             answer.still_inputs.join(", ")
         );
-        all.push(("inputs", words));
+        screen.fact("inputs", words);
     }
-    let next = answer.next_runs.iter();
-    all.extend(next.map(|one| ("next run", next_run(one))));
-    all
+    screen.each("next run", answer.next_runs.iter().map(next_run));
 }
 
 /// The verdict, a sentence.

@@ -4,7 +4,7 @@ use gyrocal::EstimationError;
 use gyrocal_calibration::{CalibrationError, Run, is_gyro_noise_implausible};
 use gyrocal_record::{CalibrationMethod, CalibrationReport};
 
-use crate::advice::{GYRO_ADVICE, advised};
+use crate::advice::{advised, on_no_fit};
 
 /// The records could not be calibrated; its help is the advice.
 #[derive(Debug, thiserror::Error)]
@@ -60,13 +60,8 @@ impl NotCalibrated {
             Why::NotLevelled | Why::NoAzimuth { .. } => {
                 return "give initial_angles_deg and initial_angles_sigma_deg in [platform]";
             }
-            Why::NoDescent { .. } | Why::NotConverged { .. } if self.tiny_gyro_noise => {
-                return GYRO_ADVICE;
-            }
             Why::NoDescent { .. } | Why::NotConverged { .. } => {
-                return "check the record for an attitude jump, a restart or a run of bad values: \
-                        --streaming shows the misfit of one pass; leave out the first hours if a gyro \
-                        warms up by degrees an hour, and the angles that belong to them";
+                return on_no_fit(self.tiny_gyro_noise);
             }
             Why::NotPositiveDefinite => true,
             Why::Filter { source, .. } | Why::Pass { source, .. } => matches!(

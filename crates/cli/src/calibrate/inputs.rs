@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use gyrocal_calibration::{Options, Run};
 use gyrocal_diagnosis::{Blocks, CalibratedRecord, Gate};
-use gyrocal_record::{AveragedReport, Bench, Record, SetupProblem, printable_path};
+use gyrocal_record::{AveragedReport, Bench, Record, SetupProblem, file_behind, printable_path};
 use miette::miette;
 
 use super::CalibrateArguments;
@@ -92,16 +92,13 @@ pub(super) fn read(arguments: &CalibrateArguments) -> Result<Vec<Measurement>, F
 }
 
 fn refuse_twins(records: &[PathBuf]) -> Result<(), Failure> {
-    let places: Vec<PathBuf> = records
-        .iter()
-        .map(|path| path.canonicalize().unwrap_or_else(|_| path.clone()))
-        .collect();
-    for (index, place) in places.iter().enumerate() {
-        if let Some(first) = places[..index].iter().position(|other| other == place) {
+    for (index, record) in records.iter().enumerate() {
+        let mut earlier = records[..index].iter();
+        if let Some(first) = earlier.find(|other| file_behind(other) == file_behind(record)) {
             return Err(Failure::Usage(format!(
                 "{} and {} are the same file: a record counts once",
-                printable_path(&records[first]),
-                printable_path(&records[index])
+                printable_path(first),
+                printable_path(record)
             )));
         }
     }

@@ -6,7 +6,7 @@ use gyrocal_calibration::{CalibrationError, is_gyro_noise_implausible};
 use gyrocal_diagnosis::DiagnosisError;
 use gyrocal_record::{Bench, printable_path};
 
-use crate::advice::{GYRO_ADVICE, advised};
+use crate::advice::{advised, on_no_fit};
 
 /// The record could not be diagnosed; its help is the advice.
 #[derive(Debug, thiserror::Error)]
@@ -57,15 +57,8 @@ impl NotDiagnosed {
             Why::Calibration(Fit::NotLevelled | Fit::NoAzimuth { .. }) => {
                 "give initial_angles_deg and initial_angles_sigma_deg in [platform]"
             }
-            Why::Calibration(Fit::NoDescent { .. } | Fit::NotConverged { .. })
-                if self.tiny_gyro_noise =>
-            {
-                GYRO_ADVICE
-            }
             Why::Calibration(Fit::NoDescent { .. } | Fit::NotConverged { .. }) => {
-                "check the record for an attitude jump, a restart or a run of bad values: `gyrocal \
-                 calibrate --streaming` shows the misfit of one pass; leave out the first hours if a \
-                 gyro warms up by degrees an hour, and the angles that belong to them"
+                on_no_fit(self.tiny_gyro_noise)
             }
             _ => {
                 "the values of the bench file may be implausible, or inconsistent with the record: \

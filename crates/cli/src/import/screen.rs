@@ -4,7 +4,7 @@ use gyrocal_document::{Screen, Standing};
 use gyrocal_instruments::strapdown::ImportReport;
 use gyrocal_record::shell_quoted;
 
-use super::{StrapdownArguments, compared, disturbed_s, is_far};
+use super::{StrapdownArguments, TO_CHECK, compared, disturbed_s, is_far, of_disturbed};
 
 /// Rows, the rates that can be held against Earth rate, noise, and what to run next.
 pub(super) fn first(arguments: &StrapdownArguments, report: &ImportReport) -> Screen {
@@ -27,8 +27,7 @@ pub(super) fn first(arguments: &StrapdownArguments, report: &ImportReport) -> Sc
         screen.fact(&format!("{name} rate"), words);
     }
     if far {
-        let words = "check latitude, units and axes in the log description, and the gyros";
-        screen.fact("what to do", words);
+        screen.fact("what to do", TO_CHECK);
     }
     record(arguments, report, &mut screen);
     next_step(arguments, &mut screen);
@@ -43,11 +42,7 @@ fn record(arguments: &StrapdownArguments, report: &ImportReport, screen: &mut Sc
         "{:.0} s in {} windows, {}",
         disturbed_s(report),
         report.disturbed_s.len(),
-        if arguments.keep_disturbed {
-            "kept"
-        } else {
-            "written as missing"
-        }
+        of_disturbed(arguments)
     );
     screen.fact("disturbed", words);
     let words = format!(

@@ -1,9 +1,7 @@
 //! Limits and goals of the command line.
 
-use gyrocal_design::Goal;
 use gyrocal_record::{AXES, Bench, GimbalLimits};
 
-use super::PlanArguments;
 use crate::Failure;
 use crate::numbers::positive;
 
@@ -65,13 +63,6 @@ pub(super) fn limits(given: &[(usize, [f64; 2])], bench: &Bench) -> GimbalLimits
         limits.deg[*axis] = Some(*ends);
     }
     limits
-}
-
-pub(super) fn goal(arguments: &PlanArguments) -> Goal {
-    Goal {
-        sigmas: arguments.sigma.clone(),
-        one_name: arguments.one_name,
-    }
 }
 
 #[cfg(test)]

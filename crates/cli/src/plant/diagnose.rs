@@ -10,6 +10,7 @@ use gyrocal_plant::{
     diagnose_records,
 };
 use gyrocal_record::{Manifest, printable_path};
+use gyrocal_words::joined;
 
 use super::warn_of_gaps;
 use crate::numbers::probability;
@@ -38,9 +39,6 @@ pub(super) struct RecordArguments {
     /// much better the parameters would be known. Several are compared.
     #[arg(long, value_name = "RUN.csv", num_args = 1..)]
     next: Vec<PathBuf>,
-    /// Write the result for programs (JSON).
-    #[arg(long, value_name = "OUT.json")]
-    json: Option<PathBuf>,
     #[command(flatten)]
     views: Views,
     /// Family-wise false-alarm probability.
@@ -97,7 +95,7 @@ pub(super) fn run(
         let (views, record) = (&arguments.views, &arguments.records[0]);
         views.stage_parts(record, parts, together, &mut shown)?;
     }
-    write_answer(arguments.json.as_deref(), answer, &mut shown)?;
+    write_answer(arguments.views.json(), answer, &mut shown)?;
     Ok(shown)
 }
 
@@ -109,7 +107,8 @@ fn parts(
 ) -> Result<Vec<Part>, Failure> {
     let of = &arguments.records[0];
     let part = |one, name: &str| page::part(of, of_plant(one, name, manifest));
-    let mut parts = vec![part(&found.together, &name(arguments))?];
+    let names = joined(arguments.records.iter().map(|one| file_name(one)), ", ");
+    let mut parts = vec![part(&found.together, &names)?];
     for (record, alone) in arguments.records.iter().zip(&found.alone) {
         if let Ok(alone) = alone {
             parts.push(part(alone, &format!("{} alone", file_name(record)))?);
@@ -118,12 +117,7 @@ fn parts(
     Ok(parts)
 }
 
-/// Name of what is diagnosed, without folders.
-fn name(arguments: &RecordArguments) -> String {
-    let names: Vec<String> = arguments.records.iter().map(|one| file_name(one)).collect();
-    names.join(", ")
-}
-
+/// Name of a record, without folders.
 fn file_name(path: &Path) -> String {
     printable_path(Path::new(path.file_name().unwrap_or(path.as_os_str())))
 }
@@ -139,8 +133,7 @@ fn checked_inputs<'a>(
     inputs.extend(arguments.validate.as_deref());
     inputs.extend(arguments.validate_columns.as_deref());
     inputs.extend(arguments.next.iter().map(PathBuf::as_path));
-    let json = arguments.json.as_deref();
-    arguments.views.check(&inputs, json, &[])?;
+    arguments.views.check(&inputs, &[])?;
     let later = arguments.validate.as_deref();
     refuse_itself("--validate", later, &arguments.records)?;
     Ok(inputs)

@@ -78,9 +78,7 @@ fn screen(answer: &Answer, extension: &Extension) -> Screen {
         screen.fact("not settled", gyrocal_words::plant::verdict(answer));
     }
     let left_out = extension.left_out.iter();
-    screen.each(
-        "left out",
-        left_out.map(|(effect, why)| format!("{effect} {why}")),
-    );
+    let left_out = left_out.map(|(effect, why)| format!("{effect} {why}"));
+    screen.each("left out", left_out);
     screen
 }

@@ -1,6 +1,5 @@
 //! `gyrocal plant fit` and `gyrocal plant compare`, and `fit` of a package for one plant.
 
-use std::cell::Cell;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -11,10 +10,9 @@ use gyrocal_plant::{ColumnMap, LoadedPlant, NamedRecord, PlantError, RecordText,
 use gyrocal_record::{Manifest, printable_path};
 use serde::Serialize;
 
-use super::warn_of_gaps;
 use crate::outputs::{self, manifest, refuse_itself};
 use crate::progress::Progress;
-use crate::{Failure, Reply};
+use crate::{Failure, Reply, terminal};
 
 /// Records and outputs of a fit.
 #[derive(Debug, Args)]
@@ -66,7 +64,7 @@ impl Files {
         let later = self.later.as_deref();
         let inputs = [record.as_path(), &self.columns].into_iter();
         let inputs: Vec<&Path> = inputs.chain(later).chain(plants).collect();
-        outputs::check(&inputs, self.json.as_deref(), None)?;
+        outputs::check(&inputs, self.json.as_deref())?;
         refuse_itself("--later", later, std::slice::from_ref(record))?;
         Ok(inputs)
     }
@@ -77,7 +75,6 @@ impl Files {
             columns: ColumnMap::read(&self.columns)?,
             record: RecordText::read(record)?,
             later: self.later.as_deref().map(RecordText::read).transpose()?,
-            warned: Cell::new(false),
         })
     }
 
@@ -103,8 +100,6 @@ struct Content {
     columns: ColumnMap,
     record: RecordText,
     later: Option<RecordText>,
-    /// Whether gaps were told.
-    warned: Cell<bool>,
 }
 
 impl Content {
@@ -116,11 +111,29 @@ impl Content {
         let named = |text| self.columns.record_of(description, text);
         let record = named(&self.record)?;
         let later = self.later.as_ref().map(named).transpose()?;
-        if !self.warned.replace(true) {
-            let all = core::iter::once(&record).chain(&later);
-            all.for_each(|one| warn_of_gaps(&self.columns, description, one));
-        }
         Ok((record, later))
+    }
+
+    /// Warns of inputs that the records do not tell for a while; of what only some plants make of a gap with their names.
+    /// A plant that the records do not fit is refused where it is fitted.
+    fn warn_of_gaps(&self, plants: &[(String, &Description)]) {
+        let mut told: Vec<(String, Vec<&str>)> = Vec::new();
+        for (name, description) in plants {
+            let records = self.records(description).into_iter();
+            let records = records.flat_map(|(record, later)| [record].into_iter().chain(later));
+            for note in records.flat_map(|one| self.columns.bridged(description, &one)) {
+                match told.iter_mut().find(|(other, _)| *other == note) {
+                    Some((_, names)) => names.push(name),
+                    None => told.push((note, vec![name])),
+                }
+            }
+        }
+        for (note, names) in told {
+            match names.len() == plants.len() {
+                true => terminal::warn(&note),
+                false => terminal::warn(&format!("{}: {note}", names.join(", "))),
+            }
+        }
     }
 }
 
@@ -132,7 +145,9 @@ pub(super) fn run(
 ) -> Result<Reply, Failure> {
     let inputs = files.checked(record, file.into_iter())?;
     let plant = plant()?;
-    let (record, later) = files.read(record)?.records(plant.description())?;
+    let content = files.read(record)?;
+    content.warn_of_gaps(&[(String::new(), plant.description())]);
+    let (record, later) = content.records(plant.description())?;
     let work = |at: &mut dyn FnMut(&'static str, f64)| {
         fit(&plant, record, later, files.first_rows, at).map(|fit| fit.answer)
     };
@@ -151,6 +166,10 @@ pub(super) fn run_compare(
     let plants = plants.map(|path| Ok((printable_path(path), LoadedPlant::read(path)?)));
     let plants: Vec<(String, LoadedPlant)> = plants.collect::<Result<_, PlantError>>()?;
     let content = files.read(record)?;
+    let described = plants
+        .iter()
+        .map(|(name, plant)| (name.clone(), plant.description()));
+    content.warn_of_gaps(&described.collect::<Vec<_>>());
     let read = |description: &Description| content.records(description);
     let work = |at: &mut dyn FnMut(&'static str, f64)| compare(&plants, read, files.first_rows, at);
     files.answered(("", &inputs), work, of_comparison)

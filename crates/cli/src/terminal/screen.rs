@@ -20,22 +20,15 @@ pub(crate) fn laid_out(screen: &Screen, columns: Option<usize>) -> String {
     let style = colour(screen.standing);
     let verdict = &screen.verdict;
     let indent = verdict.chars().count() + 2;
-    let mut what = wrapped(&screen.what, indent, columns);
-    if !what.is_empty() {
-        let first = what.remove(0);
-        what.insert(0, format!("  {BOLD}{}{BOLD:#}", &first));
-    }
-    let mut out = format!("{style}{verdict}{style:#}{}\n", what.join("\n"));
+    let what = wrapped(&screen.what, indent, columns);
+    let (first, others) = what.split_at(what.find('\n').unwrap_or(what.len()));
+    let mut out = format!("{style}{verdict}{style:#}  {BOLD}{first}{BOLD:#}{others}\n");
     let longest = |facts: &[Fact]| facts.iter().map(|fact| fact.label.chars().count()).max();
     let width = longest(&screen.facts).unwrap_or(0).clamp(4, LABEL);
     for fact in &screen.facts {
-        labelled(
-            &mut out,
-            &printable(&fact.label),
-            &fact.words,
-            width,
-            columns,
-        );
+        let label = printable(&fact.label);
+        let words = wrapped(&fact.words, width + 2, columns);
+        out.push_str(&format!("{DIM}{label:width$}{DIM:#}  {words}\n"));
     }
     if let Some(table) = &screen.table {
         out.push_str(&format!("{}\n", printable(&drawn(table))));
@@ -109,13 +102,9 @@ pub(crate) fn fitted(text: &str, columns: Option<usize>) -> String {
             out.push_str(line);
         } else {
             let indent = line.len() - line.trim_start().len();
-            let room = columns.saturating_sub(indent).max(20);
-            let broken = text::wrapped(room, line.trim_start());
-            let lines: Vec<String> = broken
-                .lines()
-                .map(|line| format!("{:indent$}{line}", ""))
-                .collect();
-            out.push_str(&lines.join("\n"));
+            let (blanks, words) = line.split_at(indent);
+            out.push_str(blanks);
+            out.push_str(&behind(indent, words, columns));
         }
         out.push('\n');
     }
@@ -127,29 +116,19 @@ pub(crate) fn note(words: &str) -> String {
     format!("{DIM}{words}{DIM:#}")
 }
 
-/// A fact behind its label.
-fn labelled(out: &mut String, label: &str, words: &str, width: usize, columns: Option<usize>) {
-    let lines = wrapped(words, width + 2, columns);
-    out.push_str(&format!(
-        "{DIM}{label:width$}{DIM:#}  {}\n",
-        lines.join("\n")
-    ));
+/// A text broken to these columns, all lines but the first behind an indent.
+fn wrapped(words: &str, indent: usize, columns: Option<usize>) -> String {
+    let words = printable_line(words);
+    match columns {
+        Some(columns) => behind(indent, &words, columns),
+        None => words.into_owned(),
+    }
 }
 
-/// Lines of a text, all but the first behind an indent.
-fn wrapped(words: &str, indent: usize, columns: Option<usize>) -> Vec<String> {
-    let words = printable_line(words);
-    let Some(columns) = columns else {
-        return vec![words.into_owned()];
-    };
-    let broken = text::wrapped(columns.saturating_sub(indent).max(20), &words);
-    let lines = broken.lines().enumerate();
-    lines
-        .map(|(index, line)| match index {
-            0 => line.to_owned(),
-            _ => format!("{:indent$}{line}", ""),
-        })
-        .collect()
+/// Lines of at most these columns, of which the indent of all but the first is a part.
+fn behind(indent: usize, words: &str, columns: usize) -> String {
+    let broken = text::wrapped(columns.saturating_sub(indent).max(20), words);
+    broken.replace('\n', &format!("\n{:indent$}", ""))
 }
 
 fn colour(standing: Standing) -> Style {

@@ -153,6 +153,28 @@ fn what_a_record_lacks_is_told() {
              99; if it moved there, cut the record",
         );
     }
+    // A plant that holds the input fills the gap its way, another one as the first does.
+    let program = std::fs::read_to_string(&plant).unwrap();
+    let held = program.replace(r#"["u", "N", true]"#, r#"["u", "N", false]"#);
+    assert_ne!(program, held);
+    for (name, text) in [("same.json", program), ("held.json", held)] {
+        folder.put(name, text);
+        let compare = ["plant", "compare", &plant, name, "gap.csv"];
+        let output = folder.run([&compare[..], &["--columns", &columns]].concat());
+        let said = String::from_utf8(output.stderr).unwrap();
+        let of = |plant: &str, how: &str| {
+            format!("warning: {plant}gap.csv: input `u` (column `drive_n`) is {how} over gaps")
+        };
+        let told = match name {
+            "same.json" => vec![of("", "interpolated")],
+            _ => vec![
+                of(&format!("{plant}: "), "interpolated"),
+                of("held.json: ", "held at its last value"),
+            ],
+        };
+        assert_eq!(said.matches("warning: ").count(), told.len(), "{said}");
+        told.iter().for_each(|words| assert_says(&said, words));
+    }
     let whole = folder.run(with("simulate", "three.csv"));
     assert!(
         whole.status.success() && whole.stderr.is_empty(),

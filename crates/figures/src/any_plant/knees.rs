@@ -52,7 +52,8 @@ pub(super) fn figures(context: &Context, plants: &[LoadedPlant]) -> Result<Vec<F
         Row::share(
             "any plant: a knee of d >= 8: in a set",
             fitted(|said| said.holds),
-        ),
+        )
+        .at_least(0.93, "sets of 95 %"),
         Row::share(
             "... another effect named beside it",
             fitted(|said| said.another),

@@ -22,19 +22,31 @@ pub struct TableColumn {
 #[non_exhaustive]
 pub enum TableUnit {
     /// rad/s
-    #[serde(rename = "rad/s")]
+    #[serde(rename = "rad/s", alias = "rad/sec")]
     RadPerS,
     /// deg/s
-    #[serde(rename = "deg/s")]
+    #[serde(
+        rename = "deg/s",
+        alias = "deg/sec",
+        alias = "°/s",
+        alias = "º/s",
+        alias = "dps"
+    )]
     DegPerS,
     /// deg/h
-    #[serde(rename = "deg/h")]
+    #[serde(
+        rename = "deg/h",
+        alias = "deg/hr",
+        alias = "°/h",
+        alias = "º/h",
+        alias = "dph"
+    )]
     DegPerH,
     /// Radians.
     #[serde(rename = "rad")]
     Rad,
     /// Degrees.
-    #[serde(rename = "deg")]
+    #[serde(rename = "deg", alias = "°", alias = "º")]
     Deg,
 }
 

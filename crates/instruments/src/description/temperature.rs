@@ -22,13 +22,25 @@ pub struct Temperature {
 pub enum TemperatureUnit {
     /// °C
     #[default]
-    #[serde(rename = "C", alias = "degC", alias = "°C")]
+    #[serde(
+        rename = "C",
+        alias = "degC",
+        alias = "°C",
+        alias = "ºC",
+        alias = "Celsius"
+    )]
     Celsius,
     /// K
-    #[serde(rename = "K")]
+    #[serde(rename = "K", alias = "Kelvin")]
     Kelvin,
     /// °F
-    #[serde(rename = "F", alias = "degF", alias = "°F")]
+    #[serde(
+        rename = "F",
+        alias = "degF",
+        alias = "°F",
+        alias = "ºF",
+        alias = "Fahrenheit"
+    )]
     Fahrenheit,
 }
 

@@ -40,22 +40,28 @@ pub struct Time {
 #[non_exhaustive]
 pub enum TimeUnit {
     /// Seconds.
-    #[serde(rename = "s")]
+    #[serde(rename = "s", alias = "sec", alias = "seconds")]
     Second,
     /// Milliseconds.
-    #[serde(rename = "ms")]
+    #[serde(rename = "ms", alias = "msec", alias = "milliseconds")]
     Millisecond,
     /// Microseconds.
-    #[serde(rename = "us", alias = "µs", alias = "μs")]
+    #[serde(
+        rename = "us",
+        alias = "µs",
+        alias = "μs",
+        alias = "usec",
+        alias = "microseconds"
+    )]
     Microsecond,
     /// Nanoseconds.
-    #[serde(rename = "ns")]
+    #[serde(rename = "ns", alias = "nsec", alias = "nanoseconds")]
     Nanosecond,
     /// Minutes.
-    #[serde(rename = "min")]
+    #[serde(rename = "min", alias = "minutes")]
     Minute,
     /// Hours.
-    #[serde(rename = "h")]
+    #[serde(rename = "h", alias = "hr", alias = "hours")]
     Hour,
     /// Date and time of RFC 3339, as `2026-03-01T12:00:00.25Z`; a blank may stand for the T, and without an
     /// offset the time is UTC. A leap second is the second after it.

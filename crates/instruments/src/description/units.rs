@@ -8,13 +8,25 @@ use serde::{Deserialize, Serialize};
 #[non_exhaustive]
 pub enum GyroUnit {
     /// rad/s
-    #[serde(rename = "rad/s")]
+    #[serde(rename = "rad/s", alias = "rad/sec")]
     RadPerS,
     /// deg/s
-    #[serde(rename = "deg/s")]
+    #[serde(
+        rename = "deg/s",
+        alias = "deg/sec",
+        alias = "°/s",
+        alias = "º/s",
+        alias = "dps"
+    )]
     DegPerS,
     /// deg/h
-    #[serde(rename = "deg/h")]
+    #[serde(
+        rename = "deg/h",
+        alias = "deg/hr",
+        alias = "°/h",
+        alias = "º/h",
+        alias = "dph"
+    )]
     DegPerH,
     /// Raw counts.
     #[serde(rename = "counts")]
@@ -27,13 +39,13 @@ pub enum GyroUnit {
 #[non_exhaustive]
 pub enum AccelUnit {
     /// m/s²
-    #[serde(rename = "m/s2", alias = "m/s²")]
+    #[serde(rename = "m/s2", alias = "m/s²", alias = "m/s^2", alias = "m/s/s")]
     MetrePerS2,
     /// ft/s²
-    #[serde(rename = "ft/s2", alias = "ft/s²")]
+    #[serde(rename = "ft/s2", alias = "ft/s²", alias = "ft/s^2", alias = "ft/s/s")]
     FootPerS2,
     /// Local gravity.
-    #[serde(rename = "g")]
+    #[serde(rename = "g", alias = "G")]
     G,
     /// Thousandths of local gravity.
     #[serde(rename = "mg")]

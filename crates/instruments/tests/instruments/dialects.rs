@@ -122,6 +122,52 @@ fn another_header_without_a_map_is_refused_with_the_command_that_writes_one() {
 }
 
 #[test]
+fn dates_without_their_format_are_refused_with_the_line_that_reads_them() {
+    for (time, stamps, format) in [
+        (
+            "column = \"t\"",
+            ["t", "28.03.2026 10:00:00", "28.03.2026 10:01:00"],
+            "%d.%m.%Y %H:%M:%S%.f",
+        ),
+        (
+            "column = \"t\"\nunit = \"rfc3339\"",
+            ["t", "03/28/2026 12:59:30 PM", "03/28/2026 1:00:30 PM"],
+            "%m/%d/%Y %I:%M:%S%.f %p",
+        ),
+        (
+            "column = \"t\"\nunit = \"rfc3339\"",
+            ["t", "23:59:30", "00:00:30"],
+            "%H:%M:%S%.f",
+        ),
+        (
+            "columns = [\"d\", \"t\"]",
+            ["d,t", "28.03.2026,10:00:00.5", "28.03.2026,10:01:00.5"],
+            "%d.%m.%Y %H:%M:%S%.f",
+        ),
+    ] {
+        let [title, first, second] = stamps;
+        let text = format!("{title},ax,ay,az\n{first},0,0,1\n{second},0,0,1\n");
+        let refused = read(text.as_bytes(), &format!("[time]\n{time}\n{AXES}")).unwrap_err();
+        let line = format!("format = \"{format}\"");
+        assert!(
+            refused.contains(&format!("give `{line}` in place")),
+            "{refused}"
+        );
+        let time = time.replace("\nunit = \"rfc3339\"", "");
+        let found = read(text.as_bytes(), &format!("[time]\n{time}\n{line}\n{AXES}")).unwrap();
+        let times = &found.record().time_s;
+        assert!((times[1] - times[0] - 60.0).abs() < 1e-6, "{times:?}");
+    }
+    // Day and month may be either.
+    let text = b"t,ax,ay,az\n03/04/2026 10:00:00,0,0,1\n";
+    let refused = read(text, &format!("[time]\ncolumn = \"t\"\n{AXES}")).unwrap_err();
+    assert!(
+        refused.contains("`format = \"%d/%m/%Y %H:%M:%S%.f\"` or `format = \"%m/%d/%Y"),
+        "{refused}"
+    );
+}
+
+#[test]
 fn dates_and_times_are_read_by_their_format() {
     for (time, rows) in [
         (

@@ -95,11 +95,23 @@ fn clocks_that_jump_or_go_back_are_refused() {
             DESCRIPTION.replace("unit_s = 1e-3\n", &format!("unit_s = 1e-3\n{jitter}"));
         let longer = if jitter.is_empty() { 35.0 } else { 135.0 };
         let gap = text(|row| regular(row) + if row > 120 { longer } else { 0.0 });
-        let (kind, message) = refused(&gap, &description);
-        assert_eq!(kind, Some(Unfit::Gap));
+        let error = parse(&gap, &description).unwrap_err();
+        let message = error.to_string();
+        // The header is line 1, so row 121, counted from 0, is line 123.
+        assert!(
+            message.starts_with("log.csv:123:1: found 1 gap(s) in the time stamps"),
+            "{message}"
+        );
         let expected = format!("{:.4} s after 1.2 s", (10.0 + longer) * 1e-3);
         assert!(message.contains(&expected), "{message}");
-        assert!(message.contains("rate_hz"), "{message}");
+        assert!(error.advice().contains("rate_hz"), "{error}");
+        // What is advised is taken: interpolation over a short gap.
+        let offers = error.advice().contains("`jitter = \"resample\"`");
+        assert_eq!(offers, jitter.is_empty());
+        if offers {
+            let resampled = description.replace("1e-3\n", "1e-3\njitter = \"resample\"\n");
+            parse(&gap, &resampled).unwrap();
+        }
     }
     let (kind, message) = refused(&text(|row| regular(row % 150)), DESCRIPTION);
     assert_eq!(kind, None);
@@ -149,8 +161,239 @@ fn stamps_that_jitter_are_a_steady_clock_or_used_or_resampled() {
     // Packets of four samples have one stamp, which is no time of a sample.
     let packets = text(|row| regular(row - row % 4));
     parse(&packets, DESCRIPTION).unwrap();
-    let (kind, message) = refused(&packets, &with("use"));
-    assert_eq!(kind, Some(Unfit::Jitter), "{message}");
+    let (_, message) = refused(&packets, &with("use"));
+    assert!(
+        message.starts_with("log.csv:3:1: found 150 rows with the stamp and the values"),
+        "{message}"
+    );
+}
+
+#[test]
+fn clocks_that_are_set_and_stamps_that_are_wrong_alone_are_told_as_such() {
+    let told = |stamp_ms: &dyn Fn(usize) -> f64| {
+        let error = parse(&text(stamp_ms), DESCRIPTION).unwrap_err();
+        (error.to_string(), error.advice().to_owned())
+    };
+    let hour = 3_600_000.0;
+    let later = |row: usize| if row > 120 { hour } else { 0.0 };
+    for (stamp, words) in [
+        (
+            &(|row| regular(row) + later(row)) as &dyn Fn(usize) -> f64,
+            "take 3600 s off the stamps",
+        ),
+        (
+            &|row| regular(row) + hour - later(row),
+            "add 3600 s to the stamps",
+        ),
+    ] {
+        let (message, advice) = told(stamp);
+        assert!(message.starts_with("log.csv:123:1: "), "{message}");
+        assert!(advice.contains(words), "{advice}");
+    }
+    let (_, advice) = told(&|row| regular(row) - if row == 90 { 25.0 } else { 0.0 });
+    assert!(advice.contains("a stamp alone is wrong"), "{advice}");
+    let (message, advice) = told(&|row| regular(row % 50));
+    assert!(
+        message.contains("time 0 s after 0.49 s, the first of 3 such steps back"),
+        "{message}"
+    );
+    assert!(advice.contains("split the file"), "{advice}");
+}
+
+#[test]
+fn stamps_in_whole_steps_are_a_steady_clock_if_no_sample_is_missing() {
+    // Eight samples share a stamp, after the first.
+    let stamp = |row: usize| ((row + 3) / 8 * 80) as f64;
+    let log = parse(&text(stamp), DESCRIPTION).unwrap();
+    assert!((log.interval_s - 0.01).abs() < 1e-4, "{}", log.interval_s);
+    // Half-way between two steps rounding goes either way: 7 to 9 samples.
+    let ties = |row: usize| {
+        let extra = usize::from((row / 8).is_multiple_of(3));
+        ((row + 3 + extra) / 8 * 80) as f64
+    };
+    parse(&text(ties), DESCRIPTION).unwrap();
+    // The fifth step lacks four of them.
+    let lost = |row: usize| stamp(row + if row >= 40 { 4 } else { 0 });
+    let error = parse(&text(lost), DESCRIPTION).unwrap_err();
+    let message = error.to_string();
+    assert!(
+        message.starts_with(
+            "log.csv:39:1: found time stamps in steps of 0.0800 s, with 4 to 8 samples"
+        ),
+        "{message}"
+    );
+    let rate = "rate_hz = 97.917";
+    assert!(error.advice().contains(rate), "{}", error.advice());
+    parse(
+        &text(lost),
+        &DESCRIPTION.replace("column = \"ms\"\nunit_s = 1e-3", rate),
+    )
+    .unwrap();
+}
+
+/// A log of noise, of which some rows are others.
+fn noisy(change: impl Fn(usize, [f64; 6]) -> [f64; 6]) -> String {
+    let mut state = 3_u64;
+    let mut uniform = || {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1);
+        (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+    };
+    let mut text = "w,v,u,ms,p,q,r\n".to_owned();
+    for row in 0..1000 {
+        let [w, v, u, p, q, r] = change(
+            row,
+            [
+                4100.0 + uniform(),
+                100.0 + uniform(),
+                100.0 + uniform(),
+                uniform(),
+                uniform(),
+                // Coarse: most values repeat the one before.
+                (0.55 * uniform()).round() + 5.0,
+            ],
+        );
+        text += &format!("{w},{v},{u},{},{p},{q},{r}\n", 10 * row);
+    }
+    text
+}
+
+#[test]
+fn gyros_that_stand_still_and_padding_are_told_with_their_line() {
+    parse(&noisy(|_, row| row), DESCRIPTION).unwrap();
+    let still = |row: usize, [w, v, u, p, q, r]: [f64; 6]| match row {
+        // Within the range of `q`.
+        300..330 => [w, v, u, p, 0.1, r],
+        _ => [w, v, u, p, q, r],
+    };
+    let error = parse(&noisy(still), DESCRIPTION).unwrap_err();
+    let message = error.to_string();
+    assert!(
+        message.starts_with("log.csv:302:1: found `q` at 0.1 in 30 samples from here on"),
+        "{message}"
+    );
+    // The part in front of it is a log.
+    let lines: Vec<String> = noisy(still).lines().map(str::to_owned).collect();
+    parse(&lines[..301].join("\n"), DESCRIPTION).unwrap();
+    // Coarse steps hide the noise of a sensor that is shaken now and then.
+    let shaken = |row: usize, [w, v, u, p, q, r]: [f64; 6]| {
+        let size = if (row / 100).is_multiple_of(2) {
+            0.8
+        } else {
+            4.0
+        };
+        [w, v, u, p, (size * q).round(), r]
+    };
+    parse(&noisy(shaken), DESCRIPTION).unwrap();
+    // Zero is no end of the range of a gyro whose rates are all negative.
+    let dead = |row: usize, [w, v, u, p, q, r]: [f64; 6]| match row {
+        970.. => [w, v, u, p, 0.0, r],
+        _ => [w, v, u, p, q - 1.0, r],
+    };
+    let (_, message) = refused(&noisy(dead), DESCRIPTION);
+    assert!(
+        message.starts_with("log.csv:972:1: found `q` at 0 in 30 samples"),
+        "{message}"
+    );
+    let padded = |row: usize, values: [f64; 6]| match row {
+        950.. => [100.0, 100.0, 100.0, 0.0, 0.0, 0.0],
+        _ => values,
+    };
+    let error = parse(&noisy(padded), DESCRIPTION).unwrap_err();
+    let message = error.to_string();
+    assert!(
+        message.starts_with("log.csv:952:1: found 50 rows to the end of the log"),
+        "{message}"
+    );
+    assert!(
+        error.advice().contains("delete the rows from this line on"),
+        "{error}"
+    );
+}
+
+#[test]
+fn sensors_slower_than_the_gyros_are_interpolated() {
+    let description =
+        format!("{DESCRIPTION}[temperature]\ncolumn = \"T\"\n[file]\nmissing = [\"--\"]\n");
+    let log = |force: &dyn Fn(usize) -> String, warmth: &dyn Fn(usize) -> String| {
+        let mut text = "w,v,u,ms,p,q,r,T\n".to_owned();
+        for row in 0..200 {
+            text += &format!(
+                "4100,100,{},{},90,180,-90,{}\n",
+                force(row),
+                10 * row,
+                warmth(row)
+            );
+        }
+        text
+    };
+    let every = |rows: usize, value: fn(usize) -> f64, none: &'static str| {
+        move |row: usize| match row.is_multiple_of(rows) {
+            true => value(row).to_string(),
+            false => none.to_owned(),
+        }
+    };
+    let force = every(4, |row| 100.0 + row as f64, "");
+    let warmth = every(50, |row| 20.0 + row as f64 / 100.0, "--");
+    let read = parse(&log(&force, &warmth), &description).unwrap();
+    let celsius = read.temperature_c.as_ref().unwrap();
+    // Rows 196 and 150 are the last that have them.
+    for row in [0, 1, 2, 77, 150] {
+        let [x, ..] = read.force().unwrap()[row];
+        assert!((x - row as f64 / 1000.0).abs() < 1e-12, "{row}: {x}");
+        assert!((celsius[row] - 20.0 - row as f64 / 100.0).abs() < 1e-12);
+    }
+    assert_eq!(read.force().unwrap()[199][0], 0.196);
+    assert_eq!(celsius[199], 21.5);
+    // A long hole is no slow sensor, and a word is no missing value unless it is listed.
+    let hole = |row: usize| match row {
+        60..150 => String::new(),
+        _ => force(row),
+    };
+    let (_, message) = refused(&log(&hole, &warmth), &description);
+    assert!(
+        message.starts_with("log.csv:59:1: found no value of `u` in 95 rows"),
+        "{message}"
+    );
+    let word = every(50, |_| 20.0, "N/A");
+    let error = parse(&log(&force, &word), &description).unwrap_err();
+    assert!(
+        error.advice().contains("missing = [\"N/A\"]"),
+        "{}",
+        error.advice()
+    );
+    let (_, message) = refused(&log(&force, &|_| String::new()), &description);
+    assert!(message.contains("no value of `T` in 200 rows"), "{message}");
+}
+
+#[test]
+fn units_are_read_as_laboratories_write_them() {
+    let good = parse(&text(regular), DESCRIPTION).unwrap();
+    for (from, to) in [
+        ("\"deg/s\"", "\"°/s\""),
+        ("\"deg/s\"", "\"dps\""),
+        ("\"deg/s\"", "\"deg/sec\""),
+        ("unit_s = 1e-3", "unit = \"msec\""),
+    ] {
+        let description = DESCRIPTION.replace(from, to);
+        assert_eq!(parse(&text(regular), &description).unwrap(), good, "{to}");
+    }
+    for (unit, in_si) in [("deg/hr", 1.0 / 3600.0), ("°/h", 1.0 / 3600.0)] {
+        let log = parse(
+            &text(regular),
+            &DESCRIPTION.replace("\"deg/s\"", &format!("\"{unit}\"")),
+        );
+        let found = log.unwrap().gyro[0][1];
+        assert!((found + 90_f64.to_radians() * in_si).abs() < 1e-15);
+    }
+    for unit in ["m/s^2", "m/s/s", "m/s²"] {
+        let text = format!(
+            "[time]\nrate_hz = 1\n[accel]\ncolumns = [\"a\", \"b\", \"c\"]\nunit = \"{unit}\"\n\
+             [site]\ngravity_m_per_s2 = 9.81\n"
+        );
+        Description::parse(&text, "log.toml").unwrap();
+    }
 }
 
 #[test]
@@ -290,8 +533,8 @@ fn files_are_refused_where_they_are_wrong() {
             "log.csv:1:1: found the column `u` twice",
         ),
         (
-            good.replacen("4100,100,100,20,", "4100,100,nan,20,", 1),
-            "log.csv:4:10: found `nan`, expected a finite number",
+            good.replacen("4100,100,100,20,90,", "4100,100,100,20,nan,", 1),
+            "log.csv:4:17: found `nan`, expected a finite number",
         ),
         (
             good.replacen("4100,100,100,20,", "4100,100,100,20,1,", 1),
@@ -458,16 +701,15 @@ fn saturated_gyros_are_told_with_the_line_where_they_begin_to_be() {
 fn rows_that_repeat_are_told_as_such() {
     // From row 100 on each sample is there twice.
     let twice = |row: usize| regular(if row < 100 { row } else { 50 + row / 2 });
-    let (kind, message) = refused(&text(twice), DESCRIPTION);
-    assert_eq!(kind, Some(Unfit::Jitter), "{message}");
+    let (_, message) = refused(&text(twice), DESCRIPTION);
+    // The header is line 1.
     assert!(
-        message.contains("50 rows with the stamp and the values"),
+        message.starts_with("log.csv:103:1: found 50 rows with the stamp and the values"),
         "{message}"
     );
-    assert!(message.contains("in row 102 at 1 s"), "{message}");
+    assert!(message.contains("the first at 1 s"), "{message}");
     // A rate that changes has no gap either.
     let slower = |row: usize| regular(row) + 2.0 * row.saturating_sub(100) as f64;
-    let (kind, message) = refused(&text(slower), DESCRIPTION);
-    assert_eq!(kind, Some(Unfit::Jitter), "{message}");
+    let (_, message) = refused(&text(slower), DESCRIPTION);
     assert!(message.contains("no steady clock"), "{message}");
 }

@@ -1,8 +1,15 @@
 //! Logs in files whose columns have types: MATLAB and, by features, MCAP and Parquet.
 
+use std::io::Write;
 use std::path::PathBuf;
 
-use gyrocal_instruments::{Description, InstrumentError, Log, average_file, read_any, read_record};
+use flate2::Compression;
+use flate2::write::ZlibEncoder;
+use gyrocal_instruments::{
+    AllanSettings, Description, InstrumentError, Log, Unfit, allan_file, average_file, read_any,
+    read_record,
+};
+use gyrocal_statistics::allan::AllanEstimator;
 use gyrocal_testkit::workspace;
 
 fn words(error: impl Into<InstrumentError>) -> String {
@@ -19,26 +26,96 @@ fn map(time: &str, accel: &str) -> Description {
     Description::parse(&text, "map.toml").unwrap()
 }
 
-/// A file of MATLAB with one matrix, its values column by column, most significant bytes first.
-fn big_endian(name: &str, [rows, columns]: [u32; 2], values: &[f64]) -> Vec<u8> {
-    let element = |kind: u32, content: Vec<u8>| {
-        let mut bytes = [kind, content.len() as u32].map(u32::to_be_bytes).concat();
-        bytes.extend(content);
+/// An element of a file of MATLAB, most significant bytes first.
+fn element(kind: u32, content: &[u8]) -> Vec<u8> {
+    let mut bytes = [kind, content.len() as u32].map(u32::to_be_bytes).concat();
+    bytes.extend(content);
+    // Compressed content ends anywhere.
+    if kind != COMPRESSED {
         bytes.resize(bytes.len().next_multiple_of(8), 0);
-        bytes
-    };
+    }
+    bytes
+}
+
+/// Type of an element whose content is an element in zlib's compression.
+const COMPRESSED: u32 = 15;
+
+/// The element of a matrix, its values column by column.
+fn matrix(name: &str, sizes: [u32; 2], values: &[f64]) -> Vec<u8> {
     let words = |two: [u32; 2]| two.map(u32::to_be_bytes).concat();
-    let numbers = values.iter().flat_map(|value| value.to_be_bytes());
+    let numbers: Vec<u8> = values
+        .iter()
+        .flat_map(|value| value.to_be_bytes())
+        .collect();
     let parts = [
-        element(6, words([6, 0])),
-        element(5, words([rows, columns])),
-        element(1, name.as_bytes().to_vec()),
-        element(9, numbers.collect()),
+        element(6, &words([6, 0])),
+        element(5, &words(sizes)),
+        element(1, name.as_bytes()),
+        element(9, &numbers),
     ];
+    element(14, &parts.concat())
+}
+
+/// A file of MATLAB with some elements.
+fn matlab(elements: &[Vec<u8>]) -> Vec<u8> {
     let mut file = vec![b' '; 124];
     file.extend([1, 0, b'M', b'I']);
-    file.extend(element(14, parts.concat()));
+    file.extend(elements.concat());
     file
+}
+
+#[test]
+fn compressed_variables_that_fill_the_memory_are_refused() {
+    let compressed = |content: &[u8]| {
+        let mut encoder = ZlibEncoder::new(Vec::new(), Compression::fast());
+        encoder.write_all(content).unwrap();
+        element(COMPRESSED, &encoder.finish().unwrap())
+    };
+    // Of another class than numbers: read, and passed over.
+    let zeros = |mib: usize| {
+        let flags = element(6, &[4_u32, 0].map(u32::to_be_bytes).concat());
+        compressed(&element(14, &[flags, vec![0; mib << 20]].concat()))
+    };
+    let rows = 24;
+    let values: Vec<f64> = (0..4 * rows).map(|value| f64::from(value) / 64.0).collect();
+    let log = compressed(&matrix("log", [rows, 4], &values));
+    let mut seed = 1_u32;
+    let noise: Vec<u8> = (0..1 << 20)
+        .map(|_| {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (seed >> 24) as u8
+        })
+        .collect();
+    let noise = element(2, &noise);
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("log.mat");
+    let description = map(
+        "column = \"log(:,1)\"",
+        r#""log(:,2)", "log(:,3)", "log(:,4)""#,
+    );
+    // A long content, and one that is a hundred times as large as its file, are logs; both together are none.
+    for (elements, is_read) in [
+        (vec![log.clone(), zeros(60)], true),
+        (vec![log.clone(), zeros(70), noise], true),
+        (vec![log.clone(), zeros(70)], false),
+        (vec![zeros(40), zeros(40), log], false),
+    ] {
+        std::fs::write(&path, matlab(&elements)).unwrap();
+        match read_record(&path, &description) {
+            Ok(file) => assert!(is_read && file.record().len() == rows as usize),
+            Err(error) => {
+                let refused = words(error);
+                assert!(!is_read, "{refused}");
+                for part in [
+                    "compressed variables of 64 MiB and more in a file of ",
+                    "less than 100 times the size of the file",
+                    "'-v6'",
+                ] {
+                    assert!(refused.contains(part), "{refused} lacks {part}");
+                }
+            }
+        }
+    }
 }
 
 #[test]
@@ -51,7 +128,8 @@ fn a_log_of_six_sensors_is_read_from_a_matrix() {
         .collect();
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("log.mat");
-    std::fs::write(&path, big_endian("log", [rows as u32, 7], &values)).unwrap();
+    let log = matrix("log", [rows as u32, 7], &values);
+    std::fs::write(&path, matlab(&[log])).unwrap();
     let text = "[time]\ncolumn = \"log(:,7)\"\n[gyro]\ncolumns = [\"log(:,1)\", \"log(:,2)\", \"log(:,3)\"]\n\
                 unit = \"rad/s\"\n[accel]\ncolumns = [\"log(:,4)\", \"log(:,5)\", \"log(:,6)\"]\nunit = \"g\"\n";
     let log = Log::read(&path, &Description::parse(text, "log.toml").unwrap()).unwrap();
@@ -64,6 +142,43 @@ fn a_log_of_six_sensors_is_read_from_a_matrix() {
             [3.0, 4.0, 5.0].map(|at| (first + at) / 64.0)
         );
     }
+}
+
+#[test]
+fn columns_of_gyros_alone_are_analysed_by_their_names() {
+    let mut state = 3_u64;
+    let mut uniform = || {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1);
+        (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+    };
+    let mut rates: Vec<f64> = (0..3 * 1000).map(|_| uniform()).collect();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("log.mat");
+    let settings = AllanSettings {
+        rate_hz: 1.0,
+        scale: 1.0,
+        confidence: 0.683,
+        estimator: AllanEstimator::Overlapping,
+    };
+    let names = ["gyr(:,1)", "gyr(:,2)", "gyr(:,3)"];
+    let mut analysed = |change: &dyn Fn(&mut [f64])| {
+        change(&mut rates);
+        std::fs::write(&path, matlab(&[matrix("gyr", [1000, 3], &rates)])).unwrap();
+        allan_file(&path, &names, &settings)
+    };
+    let columns = analysed(&|_| ()).unwrap();
+    let found: Vec<&str> = columns.iter().map(|column| &*column.name).collect();
+    assert_eq!(found, names);
+    // White noise of 1/12 has a deviation of its root; 1000 samples tell it to 2.7 %, one sigma.
+    let ratio = columns[2].points[0].deviation * 12.0_f64.sqrt();
+    assert!((ratio - 1.0).abs() < 0.1, "{ratio}");
+    let still = analysed(&|rates| rates[1300..1340].fill(0.25)).unwrap_err();
+    assert_eq!(still.kind(), Some(Unfit::Stuck));
+    assert!(words(still).contains("`gyr(:,2)` at 0.25 in 40 samples from here on in record 301"),);
+    let constant = analysed(&|rates| rates[..1000].fill(0.25)).unwrap_err();
+    assert!(words(constant).contains("a column `gyr(:,1)` that never changes"));
 }
 
 #[test]
@@ -213,7 +328,10 @@ fn a_temperature_is_that_of_the_topic_of_the_record() {
 fn a_file_of_mcap_is_refused_with_the_feature_to_build() {
     let description = map("column = \"t\"", r#""acc.0", "acc.1", "acc.2""#);
     let refused = words(read_record(&case("mcap_json.mcap"), &description).unwrap_err());
-    assert!(refused.contains("--features mcap"), "{refused}");
+    assert!(
+        refused.contains("cargo install --locked --path crates/cli --features mcap"),
+        "{refused}"
+    );
 }
 
 #[cfg(not(feature = "parquet"))]
@@ -221,7 +339,10 @@ fn a_file_of_mcap_is_refused_with_the_feature_to_build() {
 fn a_file_of_parquet_is_refused_with_the_feature_to_build() {
     let description = map("column = \"time_s\"", r#""x", "y", "z""#);
     let refused = words(read_record(&case("typed.parquet"), &description).unwrap_err());
-    assert!(refused.contains("--features parquet"), "{refused}");
+    assert!(
+        refused.contains("cargo install --locked --path crates/cli --features parquet"),
+        "{refused}"
+    );
 }
 
 /// Files of Parquet that pyarrow wrote, by `make_parquet.py`, with the rows of `truth.csv`.

@@ -82,11 +82,6 @@ fn undetected(result: &Answer) -> Vec<Item> {
     table.chain(untested).collect()
 }
 
-/// The command that plans the next run.
-fn plan_command(result: &Answer) -> String {
-    format!("gyrocal plan {}", gyrocal_words::files(result))
-}
-
 /// What reduces the sigmas.
 const FOR_SMALLER_SIGMAS: &str = "The command finds the run that reduces the sigmas most.";
 
@@ -112,10 +107,9 @@ fn advice(result: &Answer) -> String {
 }
 
 pub(super) fn next_run(result: &Answer) -> Section {
-    let mut items = vec![
-        Item::text(advice(result)),
-        Item::command(plan_command(result)),
-    ];
+    let files = gyrocal_words::files(result);
+    let plan = Item::command(format!("gyrocal plan {files}"));
+    let mut items = vec![Item::text(advice(result)), plan];
     let effects: Vec<&str> = result.causes().map(|cause| &*cause.effect).collect();
     // Of several records the command has no such model.
     if !effects.is_empty() && result.records.is_empty() {
@@ -123,11 +117,9 @@ pub(super) fn next_run(result: &Answer) -> Section {
             "Coefficients with {} in the model:",
             listed(&effects)
         )));
-        items.push(Item::command(format!(
-            "gyrocal calibrate {} --with {}",
-            gyrocal_words::files(result),
-            effects.join(",")
-        )));
+        let causes = effects.join(",");
+        let command = format!("gyrocal calibrate {files} --with {causes}");
+        items.push(Item::command(command));
     }
     if !result.search_complete {
         items.push(Item::text(

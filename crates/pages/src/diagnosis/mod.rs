@@ -14,7 +14,7 @@ use gyrocal_diagnosis::Diagnosis;
 use gyrocal_document::{Item, Part, Section};
 
 use crate::error::PageError;
-use crate::origin::{origin, record_name};
+use crate::origin::{part, record_name};
 use open_loop::Simulated;
 
 /// The page of a diagnosis with its fits.
@@ -42,7 +42,7 @@ pub fn of_diagnosis(diagnosis: &Diagnosis<'_>) -> Result<Part, PageError> {
     let best = diagnosis.extended.as_ref().unwrap_or(&diagnosis.nominal);
     sections.push(coefficients::site(best)?);
     sections.push(limits::next_run(result));
-    Ok(part(result, sections))
+    Ok(assembled(result, sections))
 }
 
 /// The page of a written answer on a platform: all but the charts over time, for which the record is needed.
@@ -55,17 +55,14 @@ pub(crate) fn of_platform(result: &Answer) -> Part {
         sections.extend(gain::section(result, None));
         sections.push(limits::next_run(result));
     }
-    part(result, sections)
+    assembled(result, sections)
 }
 
-fn part(result: &Answer, sections: Vec<Section>) -> Part {
-    Part {
-        name: record_name(&result.manifest, result.records.len()),
-        size: gyrocal_words::size(result.record.rows, result.record.duration_s),
-        first: gyrocal_words::first_screen(result),
-        sections,
-        origin: origin(&result.manifest),
-    }
+fn assembled(result: &Answer, sections: Vec<Section>) -> Part {
+    let (manifest, first) = (&result.manifest, gyrocal_words::first_screen(result));
+    let name = record_name(manifest, result.records.len());
+    let size = gyrocal_words::size(result.record.rows, result.record.duration_s);
+    part(manifest, name, size, first, sections)
 }
 
 /// Errors of the set-up, findings, records and ranking.

@@ -5,6 +5,7 @@ use gyrocal_diagnosis::{ChannelCorrelation, ChannelSpectrum, Diagnosis, ModelVer
 use gyrocal_document::{Chart, Item, Level, Mark, Panel, Section, Tint};
 use gyrocal_record::AXES;
 use gyrocal_statistics::format;
+use gyrocal_words::{joined, time};
 
 use super::test_table;
 use crate::panels::{self, line};
@@ -41,38 +42,24 @@ fn look(model: ModelVersion) -> (&'static str, Tint) {
 }
 
 fn correlation(channels: Vec<ChannelCorrelation>) -> Chart {
-    let outside = |model: ModelVersion| -> usize {
-        let of = channels.iter().filter(|channel| channel.model == model);
-        of.map(|channel| channel.outside).sum()
-    };
-    let has_extended = channels
-        .iter()
-        .any(|one| one.model == ModelVersion::Extended);
-    let known = channels
-        .iter()
-        .filter(|one| one.model == ModelVersion::Nominal);
-    let known = known.flat_map(|one| &one.correlation);
-    let total = known.filter(|value| !value.is_nan()).count();
-    let nominal = outside(ModelVersion::Nominal);
-    let extended = has_extended.then(|| outside(ModelVersion::Extended));
     let panels = (0..3).map(|axis| {
         let of_axis: Vec<_> = channels.iter().filter(|one| one.axis == axis).collect();
-        let half = of_axis.first().map_or(f64::NAN, |one| one.band);
-        let lines = of_axis.iter().map(|channel| {
-            let (label, tint) = look(channel.model);
-            line(label, tint, channel.correlation.clone())
-        });
-        let shown = of_axis.iter().filter(|channel| channel.samples > 0);
-        let largest: Vec<String> = shown
-            .map(|channel| format!("{:+.3}", channel.largest))
-            .collect();
-        let note = match &*largest {
-            [] => String::new(),
-            both => format!("largest {}", both.join(" → ")),
+        let of = |model: ModelVersion| {
+            let own = of_axis.iter().find(|one| one.model == model);
+            own.map(|one| one.correlation.clone())
         };
-        panels::correlation(AXES[axis].to_owned(), note, half, lines.collect())
+        let half = of_axis.first().map_or(f64::NAN, |one| one.band);
+        let shown = of_axis.iter().filter(|channel| channel.samples > 0);
+        let largest = joined(shown.map(|one| format!("{:+.3}", one.largest)), " → ");
+        let note = match &*largest {
+            "" => String::new(),
+            both => format!("largest {both}"),
+        };
+        let nominal = of(ModelVersion::Nominal).unwrap_or_default();
+        let models = (nominal, of(ModelVersion::Extended));
+        panels::correlation(AXES[axis].to_owned(), note, half, models)
     });
-    panels::correlations([nominal, total], extended, panels.collect())
+    panels::correlations(panels.collect())
 }
 
 /// The strongest line above the threshold.
@@ -83,10 +70,9 @@ fn strongest(spectra: &[ChannelSpectrum]) -> Option<&ChannelSpectrum> {
         .max_by(|a, b| a.line_over_threshold.total_cmp(&b.line_over_threshold))
 }
 
-/// Period of the largest line, h.
+/// Period of the largest line.
 fn period(spectrum: &ChannelSpectrum) -> String {
-    let period_h = 1.0 / (3600.0 * spectrum.periodogram.line.frequency_hz);
-    format!("{} h", format::short(period_h, 3))
+    time(1.0 / spectrum.periodogram.line.frequency_hz)
 }
 
 /// The strongest line, and whether it remains in the extended model.

@@ -4,7 +4,7 @@ use gyrocal_answer::{AllanCourse, Answer, FilterTest, ResidualTest, ResidualVerd
 use gyrocal_document::Table;
 use gyrocal_record::AXES;
 use gyrocal_statistics::format::{self, p_cell, short};
-use gyrocal_words::counted;
+use gyrocal_words::{counted, time};
 
 /// Name of the test of correlation.
 const LJUNG_BOX: &str = "correlation over rows (Ljung-Box)";
@@ -40,7 +40,7 @@ fn ljung_box(statistic: f64, degrees_of_freedom: usize) -> String {
 fn line_of(period_h: f64, amplitude: f64, duration_h: f64) -> String {
     let period = match period_h > duration_h {
         true => "period longer than the record".to_owned(),
-        false => format!("period {} h", short(period_h, 4)),
+        false => format!("period {}", time(3600.0 * period_h)),
     };
     format!("{period}, amplitude {} σ", short(amplitude, 2))
 }
@@ -106,10 +106,8 @@ fn allan(result: &Answer) -> Test {
     let course = match test.course {
         AllanCourse::White => {
             let longest = test.points.last().map_or(0.0, |point| point.tau_s);
-            let found = format!(
-                "white noise of the estimated level up to {}",
-                duration(longest)
-            );
+            let longest = time(longest);
+            let found = format!("white noise of the estimated level up to {longest}");
             return told(found, Some(test.p_value));
         }
         AllanCourse::LargerWhite => "white noise above the estimated level",
@@ -125,20 +123,12 @@ fn allan(result: &Answer) -> Test {
     let at = largest.map_or_else(String::new, |(factor, tau_s, axis)| {
         format!(
             "; at {} {} times that of white noise, axis {}",
-            duration(tau_s),
+            time(tau_s),
             short((100.0 * factor).round() / 100.0, 4),
             AXES[axis]
         )
     });
     told(format!("{course}{at}"), Some(test.p_value))
-}
-
-/// A duration: seconds below an hour, hours beyond.
-fn duration(seconds: f64) -> String {
-    match seconds < 3600.0 {
-        true => format!("{} s", short(seconds, 4)),
-        false => format!("{} h", short((seconds / 360.0).round() / 10.0, 4)),
-    }
 }
 
 /// Consistency of another filter.

@@ -1,23 +1,20 @@
 //! The page of a fit of a plant, and that of several beside each other.
 
 use gyrocal_answer::{OutputFit, PlantComparison, PlantFit};
-use gyrocal_document::{Item, Part, Screen, Section, Table};
+use gyrocal_document::{Item, Part, Section, Table};
 use gyrocal_record::Manifest;
 use gyrocal_statistics::format;
 use gyrocal_words::plant::{comparison_screen, direction, fit_screen, simulation_error};
 
 use super::{over_time, rms, tables};
-use crate::origin::{file_name, origin};
+use crate::origin::{file_name, part};
 use crate::words::section;
 
 /// The page of a fit.
 #[must_use]
 pub fn of_fit(fit: &PlantFit, manifest: &Manifest) -> Part {
-    part(
-        manifest,
-        fit_screen(fit),
-        vec![estimates(fit), simulations(fit)],
-    )
+    let (name, sections) = (file_name(manifest, 0, "record"), of_model(fit).into());
+    part(manifest, name, String::new(), fit_screen(fit), sections)
 }
 
 /// The page of fits of several plants to one record.
@@ -26,23 +23,17 @@ pub fn of_comparison(compared: &PlantComparison, manifest: &Manifest) -> Part {
     let mut first = comparison_screen(compared);
     first.table = Some(table(compared));
     let sections = compared.models.iter().flat_map(|one| {
-        [estimates(&one.fit), simulations(&one.fit)].map(|section| Section {
+        of_model(&one.fit).map(|section| Section {
             title: format!("{}, {}", section.title, one.name),
             ..section
         })
     });
-    part(manifest, first, sections.collect())
+    let (name, sections) = (file_name(manifest, 0, "record"), sections.collect());
+    part(manifest, name, String::new(), first, sections)
 }
 
-/// The first file of the manifest is the record.
-fn part(manifest: &Manifest, first: Screen, sections: Vec<Section>) -> Part {
-    Part {
-        name: file_name(manifest, 0, "record"),
-        size: String::new(),
-        first,
-        sections,
-        origin: origin(manifest),
-    }
+fn of_model(fit: &PlantFit) -> [Section; 2] {
+    [estimates(fit), simulations(fit)]
 }
 
 fn estimates(fit: &PlantFit) -> Section {

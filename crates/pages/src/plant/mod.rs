@@ -13,9 +13,10 @@ use gyrocal_plant::Diagnosed;
 use gyrocal_record::Manifest;
 use gyrocal_statistics::format;
 use gyrocal_words::counted;
+use gyrocal_words::plant::first_screen;
 
 use crate::error::PageError;
-use crate::origin::{origin, record_name};
+use crate::origin::{part, record_name};
 use crate::ranked;
 
 /// The page of a diagnosis of a plant; `name` is that of its record.
@@ -28,7 +29,8 @@ pub fn of_plant(diagnosed: &Diagnosed, name: &str, manifest: &Manifest) -> Resul
     sections.extend(of_tables(answer, Some(diagnosed)));
     sections.push(over_time::innovations(diagnosed)?);
     sections.push(limits::cannot_tell(answer));
-    Ok(part(answer, name, manifest, sections))
+    let (name, first) = (name.to_owned(), first_screen(answer));
+    Ok(part(manifest, name, size(answer), first, sections))
 }
 
 /// Sets, ranking, parameters, records, left-out parts and gain, those that there are.
@@ -49,18 +51,9 @@ pub(crate) fn of_answer(answer: &Answer) -> Part {
     let mut sections: Vec<Section> = of_tables(answer, None).collect();
     sections.push(over_time::tested(answer, None));
     sections.push(limits::cannot_tell(answer));
-    let name = record_name(&answer.manifest, answer.records.len());
-    part(answer, &name, &answer.manifest, sections)
-}
-
-fn part(answer: &Answer, name: &str, manifest: &Manifest, sections: Vec<Section>) -> Part {
-    Part {
-        name: name.to_owned(),
-        size: size(answer),
-        first: gyrocal_words::plant::first_screen(answer),
-        sections,
-        origin: origin(manifest),
-    }
+    let manifest = &answer.manifest;
+    let name = record_name(manifest, answer.records.len());
+    part(manifest, name, size(answer), first_screen(answer), sections)
 }
 
 /// Rows and duration.

@@ -130,11 +130,9 @@ pub(super) fn residual(title: String, series: &RecordSeries, whole: bool) -> Cha
 /// Tests of the innovations.
 pub(super) fn innovations(diagnosed: &Diagnosed) -> Result<Section, PageError> {
     let found = diagnosed.correlations(LAGS)?;
-    let found: Vec<OutputCorrelation> = found
-        .into_iter()
-        .filter(|one| !one.nominal.is_empty())
-        .collect();
-    let chart = (!found.is_empty()).then(|| correlations(&found));
+    let found = found.into_iter().filter(|one| !one.nominal.is_empty());
+    let found: Vec<Panel> = found.map(correlation).collect();
+    let chart = (!found.is_empty()).then(|| panels::correlations(found));
     Ok(tested(&diagnosed.answer, chart))
 }
 
@@ -149,27 +147,10 @@ pub(super) fn tested(answer: &Answer, chart: Option<Chart>) -> Section {
     section("residuals", "Innovations", lead, items)
 }
 
-fn correlations(found: &[OutputCorrelation]) -> Chart {
-    let count = |of: &dyn Fn(&OutputCorrelation) -> Option<&Vec<f64>>| -> usize {
-        let outside = |one: &OutputCorrelation| {
-            let values = of(one).into_iter().flatten();
-            values.filter(|value| value.abs() > one.band).count()
-        };
-        found.iter().map(outside).sum()
-    };
-    let total: usize = found.iter().map(|one| one.nominal.len()).sum();
-    let nominal = count(&|one| Some(&one.nominal));
-    let has_extended = found.iter().any(|one| one.extended.is_some());
-    let extended = has_extended.then(|| count(&|one| one.extended.as_ref()));
-    let panels = found.iter().map(|one| {
-        let lines = panels::of_models(one.nominal.clone(), one.extended.clone());
-        let note = format!("{} innovations", one.values);
-        panels::correlation(one.output.clone(), note, one.band, lines)
-    });
-    Chart {
-        columns: found.len().clamp(1, panels::COLUMNS),
-        ..panels::correlations([nominal, total], extended, panels.collect())
-    }
+fn correlation(one: OutputCorrelation) -> Panel {
+    let note = format!("{} innovations", one.values);
+    let models = (one.nominal, one.extended);
+    panels::correlation(one.output, note, one.band, models)
 }
 
 /// Whiteness of what is left, and noise.

@@ -8,7 +8,8 @@ use base64::engine::general_purpose::STANDARD;
 /// The columns of a page.
 #[derive(Default)]
 pub(super) struct Columns {
-    encoded: Vec<String>,
+    /// All columns in base64, in their order.
+    pub(super) encoded: Vec<String>,
     places: HashMap<String, usize>,
 }
 
@@ -27,10 +28,5 @@ impl Columns {
         self.places.insert(text.clone(), place);
         self.encoded.push(text);
         place
-    }
-
-    /// All columns in base64.
-    pub(super) fn finish(self) -> Vec<String> {
-        self.encoded
     }
 }

@@ -30,11 +30,7 @@ pub(super) fn rows<'a>(
         few if few <= MOST_ROWS => (0..few).collect(),
         _ => extremes(abscissa.len(), columns),
     };
-    let longest = if no_gaps {
-        f64::INFINITY
-    } else {
-        longest_interval(abscissa)
-    };
+    let longest = longest_interval(abscissa, no_gaps);
     let mut rows = Vec::with_capacity(kept.len());
     for (place, &row) in kept.iter().enumerate() {
         let before = place.checked_sub(1).map(|before| kept[before]);

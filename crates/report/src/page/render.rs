@@ -36,7 +36,7 @@ pub fn to_html(page: &Page) -> Result<String, Error> {
     let parts = page.parts.iter().enumerate();
     let parts = parts.map(|(place, part)| drawing.part(place, part));
     let parts: Vec<Value> = parts.collect::<Result<_, _>>()?;
-    let data = json!({ "columns": drawing.columns.finish(), "charts": drawing.charts });
+    let data = json!({ "columns": drawing.columns.encoded, "charts": drawing.charts });
     let whole = environment.get_template("page.html").map_err(template)?;
     whole
         .render(context! {

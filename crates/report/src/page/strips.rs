@@ -3,10 +3,9 @@
 use gyrocal_document::{Bar, BarGroup, Bars, EstimateRow, Estimates};
 use serde_json::{Value, json};
 
+use crate::estimates::ends;
 use crate::number::{short, with_uncertainty};
-
-/// Width of an interval, in standard deviations each way.
-const SIGMAS: f64 = 2.0;
+use crate::span::Span;
 
 /// Bars with their lengths in percent of the longest.
 pub(super) fn bars(bars: &Bars) -> Value {
@@ -60,18 +59,13 @@ pub(super) fn estimates(estimates: &Estimates) -> Value {
 }
 
 fn drawn_row(estimates: &Estimates, row: &EstimateRow) -> Value {
-    let ends = |value: f64, sigma: f64| [value - SIGMAS * sigma, value + SIGMAS * sigma];
-    let all = row.values.iter().flat_map(|one| ends(one.value, one.sigma));
-    let (low, high) = all
-        .filter(|end| end.is_finite())
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), end| {
-            (low.min(end), high.max(end))
-        });
+    let span = Span::of(row.values.iter().flat_map(ends));
+    let Span { lo: low, hi: high } = span.unwrap_or(Span::new(0.0, 0.0));
     let margin = 0.06 * (high - low).max(f64::MIN_POSITIVE);
     let place = |value: f64| 100.0 * (value - low + margin) / (high - low + 2.0 * margin);
     let values = row.values.iter().zip(&estimates.models);
     let values = values.map(|(one, (label, tint))| {
-        let [from, to] = ends(one.value, one.sigma).map(place);
+        let [from, to] = ends(one).map(place);
         let text = match one.value.is_nan() {
             true => "none".to_owned(),
             false => with_uncertainty(one.value, one.sigma),

@@ -3,7 +3,7 @@
 use super::verdict::{heading, how_sure};
 use super::{has_several, is_correlated, latitude, record_line, tables};
 use crate::diagnosis::parameter_values;
-use crate::files::{few, input_files, joined, record_and_bench};
+use crate::files::{few, input_files, joined};
 use crate::format::{tested, with_sigma};
 use gyrocal::EFFECTS;
 use gyrocal_answer::Parameter;
@@ -71,7 +71,7 @@ fn next(report: &CalibrationReport, screen: &mut Screen) {
         FitVerdict::Consistent => "all tests, and what could go undetected",
         _ => "looks for the causes",
     };
-    let files = input_files(inputs).unwrap_or_else(|| record_and_bench(inputs));
+    let files = input_files(inputs, false, &[]);
     screen.then(format!("gyrocal diagnose {files}"), why);
 }
 

@@ -6,13 +6,11 @@ use gyrocal_statistics::format::{self, p_value, percent, with_sigma};
 use super::catalogue::has_random_walk;
 use super::clean_screen;
 use super::findings::{likely, value};
-use super::records::{self, files};
+use super::records::{files, sizes};
 use super::verdict;
 use crate::files::{few, joined};
 use crate::format::{NO_P, behind, counted, short, tested};
-use gyrocal_answer::{
-    Answer, Finding, FindingKind, Parameter, ResidualVerdict, SetupProblem, Verdict,
-};
+use gyrocal_answer::{Answer, Finding, FindingKind, ResidualVerdict, SetupProblem, Verdict};
 use gyrocal_document::{Screen, Standing};
 
 /// Findings that are told one by one.
@@ -93,7 +91,8 @@ fn found(result: &Answer) -> Screen {
         };
         screen.fact(label, size(finding));
     }
-    screen.fact("in each record", records::fact(result));
+    let sizes = joined(result.causes().filter_map(sizes), "; ");
+    screen.fact("in each record", sizes);
     if !is_settled {
         screen.fact("not settled", verdict::not_settled(result));
     }
@@ -112,7 +111,11 @@ fn found(result: &Answer) -> Screen {
 /// Size and significance of a finding.
 fn size(finding: &Finding) -> String {
     let parameters = finding.parameters.iter().map(|parameter| {
-        let value = value_with_unit(parameter);
+        let value = match parameter.sigma {
+            Some(sigma) => with_sigma(parameter.estimate, sigma),
+            None => value(parameter),
+        };
+        let value = value + &behind(&parameter.unit);
         match parameter.name.as_str() {
             "size" => value,
             name => format!("{name} {value}"),
@@ -129,14 +132,6 @@ fn size(finding: &Finding) -> String {
         _ => "",
     };
     parts.join(", ") + left_out
-}
-
-fn value_with_unit(parameter: &Parameter) -> String {
-    let value = match parameter.sigma {
-        Some(sigma) => with_sigma(parameter.estimate, sigma),
-        None => value(parameter),
-    };
-    value + &behind(&parameter.unit)
 }
 
 /// The other members of the confidence sets, exact equivalents and near twins, without repetition.

@@ -2,9 +2,9 @@
 
 use gyrocal_statistics::format::with_sigma;
 
-use crate::files::{input_files, joined, record_and_bench};
+use crate::files::{input_files, joined};
 use crate::format::behind;
-use gyrocal_answer::{Answer, Finding, FindingKind, SizeChoice, Verdict};
+use gyrocal_answer::{Answer, Finding, SizeChoice, Verdict};
 
 /// Whether an effect has one size in all records, and its sizes in each.
 #[must_use]
@@ -51,22 +51,8 @@ pub fn alone(result: &Answer) -> String {
     }
 }
 
-/// Words of the first screen: what each record tells of the causes, or that none shows any alone.
-pub(super) fn fact(result: &Answer) -> String {
-    let causes = result.of_kind(FindingKind::Cause);
-    joined(causes.filter_map(sizes), "; ")
-}
-
-/// The files of a result as arguments of `calibrate` and `diagnose`, as a shell reads them: records, bench files
-/// and, where there are, axes of strapdown units and the map of columns.
+/// The files of a result as arguments of `calibrate` and `diagnose`, as a shell reads them.
 #[must_use]
 pub fn files(result: &Answer) -> String {
-    let inputs = &result.manifest.inputs;
-    input_files(inputs).unwrap_or_else(|| {
-        let axes = match result.is_strapdown() {
-            true => " --gyro-axes AXES.csv",
-            false => "",
-        };
-        record_and_bench(inputs) + axes
-    })
+    input_files(&result.manifest.inputs, result.is_strapdown(), &[])
 }

@@ -6,7 +6,7 @@ use crate::files::{few, joined};
 use crate::format::{counted, size};
 use crate::means::means;
 use gyrocal_answer::{Answer, SetupProblem};
-use gyrocal_document::{List, Words};
+use gyrocal_document::Words;
 
 /// Records that are named.
 const RECORDS_SHOWN: usize = 4;
@@ -44,6 +44,8 @@ pub fn not_settled(result: &Answer) -> String {
 /// Gross errors of the set-up, as a list; `None` if there are none.
 #[must_use]
 pub fn setup(problems: &[SetupProblem]) -> Option<Words> {
-    let entries = problems.iter().map(SetupProblem::text);
-    List::of("Errors of the set-up", entries).map(Words::List)
+    Words::list(
+        "Errors of the set-up",
+        problems.iter().map(SetupProblem::text),
+    )
 }

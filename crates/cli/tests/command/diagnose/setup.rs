@@ -88,6 +88,15 @@ fn outputs_of_earlier_runs_do_not_outlive_a_wrong_setup() {
         "f.csv: not written, as the set-up is wrong; the earlier file is removed",
     );
     assert_says(&said, "pictures: no pictures, as the set-up is wrong");
+    // Of the folder only what is there is told: nothing, another file, a picture.
+    let older = "; pictures that are there are older";
+    for (name, holds) in [("", false), ("notes.txt", false), ("gain.svg", true)] {
+        if !name.is_empty() {
+            folder.put(&format!("pictures/{name}"), "");
+        }
+        let said = folder.succeed([&DIAGNOSE[..], &pictures].concat());
+        assert_eq!(said.contains(older), holds, "{name}: {said}");
+    }
     let calibrate = ["calibrate", RECORD, "--bench", BENCH];
     let errors = folder.run([&calibrate[..], &["--coefficients", "d.csv"]].concat());
     assert_says(&String::from_utf8(errors.stderr).unwrap(), "; d.csv: not");
