@@ -225,6 +225,7 @@ class Plant:
     def to_json(self) -> str:
         """The program file."""
         self._check()
+        self._extend_by_delays()
         if self._grammar is not False:
             self._propose()
         self._extend()
@@ -266,9 +267,11 @@ class Plant:
         known = [*self._states, *self._parameters, *self._inputs]
         late = [one.sx for one in self._late]
         symbols = [one.sx for one in known] + late
-        for output in self._outputs:
-            if any(ca.depends_on(output.facts["expression"], one) for one in late):
-                raise PlantError(f"output `{output.name}` uses a delayed input, which rates alone may: let a state "
+        readings = [(f"output `{one.name}`", one.facts["expression"]) for one in self._outputs]
+        readings += [(f"effect `{one.id}`", one.term) for one in self._effects if one.place == "output"]
+        for what, reading in readings:
+            if any(ca.depends_on(reading, one) for one in late):
+                raise PlantError(f"{what} uses a delayed input, which rates alone may: let a state "
                                  "follow the input, and read that")
         every = [(f"the rate of `{n}`", e) for n, e in self._rates.items()]
         every += [(f"output `{o.name}`", o.facts["expression"]) for o in self._outputs]
@@ -340,6 +343,9 @@ class Plant:
             reading = output.facts["expression"]
             fed = any(ca.depends_on(reading, i.sx) for i in self._inputs)
             slope = None if fed else ca.jacobian(reading, states) @ rates
+            # A reading is of its row, and has no part of an input that acts late.
+            if slope is not None and any(ca.depends_on(slope, late.sx) for late in self._late):
+                slope = None
             terms = grammar.of_output(output.name, units.plain(output.unit), reading, slope)
             for ident, words, unit, expression in terms:
                 self._add(f"{output.name}.{ident}", f"sensor: {words}",
@@ -360,17 +366,26 @@ class Plant:
     def _unit_of(self, knee: grammar.Knee) -> str:
         return next(one.unit for one in [*self._states, *self._inputs] if one.name == knee.of)
 
+    def _extend_by_delays(self) -> None:
+        """Makes inputs late in all rates, and so in the terms that are proposed for these."""
+        delays = {f"{one.name}.delay": one.sx for one in self._inputs}
+        for ident, value, sigma, knee in self._extensions:
+            if ident not in delays:
+                continue
+            if knee is not None:
+                raise PlantError(f"effect `{ident}` has no knee; leave `knee=` out")
+            logged = delays[ident]
+            late = self.delay(logged, "s", value, sigma)
+            self._rates = {name: ca.substitute(rate, logged, late) for name, rate in self._rates.items()}
+            for own in self._effects:
+                if own.place == "rate" and own.term is not None:
+                    own.term = ca.substitute(own.term, logged, late)
+        self._extensions = [one for one in self._extensions if one[0] not in delays]
+
     def _extend(self) -> None:
         """Makes terms of the catalogue nominal ones."""
         of_time = {effect.id for effect in self._of_time(self._constants())}
         for ident, value, sigma, knee in self._extensions:
-            logged = next((i for i in self._inputs if ident == f"{i.name}.delay"), None)
-            if logged:
-                if knee is not None:
-                    raise PlantError(f"effect `{ident}` has no knee; leave `knee=` out")
-                late = self.delay(logged.sx, "s", value, sigma)
-                self._rates = {name: ca.substitute(rate, logged.sx, late) for name, rate in self._rates.items()}
-                continue
             known = {effect.id: effect for effect in [*self._constants(), *self._effects]}
             if ident in of_time:
                 raise PlantError(f"effect `{ident}` is a function of time and no term of the equations, "

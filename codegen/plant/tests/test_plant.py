@@ -157,5 +157,8 @@ def test_a_delay_that_was_found_extends_the_plant():
     tables = {table["name"]: table for table in json.loads(plant.to_json())["tables"]}
     values = {row[0]: row[2] for row in tables["plant_parameters"]["rows"]}
     assert values == {"b": 0.5, "u.delay": 0.3}
-    effects = [row[0] for row in tables["plant_effects"]["rows"]]
+    effects = {row[0]: row[2] for row in tables["plant_effects"]["rows"]}
     assert "u.delay" not in effects and "u.play" in effects
+    # Terms of the rates act late too; a reading has no part of what acts late.
+    assert effects["x_rate.u^2"] == "sq(u_late)"
+    assert "y.lag" not in effects

@@ -21,6 +21,10 @@ const JITTER: f64 = 1e-6;
 /// chi-square with one degree of freedom.
 const PENALTY_QUANTILE: f64 = 0.99;
 
+/// What the same quantile of chi-square gains by a second degree of freedom: the penalty of an effect whose fit moves
+/// its knee. The detection test takes the knee where it is declared, and subtracts none of it.
+const KNEE_PENALTY: f64 = 2.575_443_770_962_76;
+
 /// Fraction of the search penalty that the detection test subtracts; ranking subtracts all of it. A step of
 /// five standard deviations would exceed a threshold of 14.5 raised by 6, what searching an onset
 /// reaches, with a probability of 0.68, where a constant term exceeds 14.5 with 0.88 (normal
@@ -214,11 +218,17 @@ impl NullDistribution {
             }
         }
         max_statistics.sort_unstable_by(f64::total_cmp);
+        let detection_penalties = penalties.iter();
+        let detection_penalties =
+            detection_penalties.map(|penalty| DETECTION_PENALTY_FRACTION * penalty);
+        let detection_penalties = detection_penalties.collect();
+        for (hypothesis, penalty) in hypotheses.iter().zip(&mut penalties) {
+            if hypothesis.effect.has_knee() {
+                *penalty += KNEE_PENALTY;
+            }
+        }
         Self {
-            detection_penalties: penalties
-                .iter()
-                .map(|penalty| DETECTION_PENALTY_FRACTION * penalty)
-                .collect(),
+            detection_penalties,
             penalties,
             max_statistics,
         }

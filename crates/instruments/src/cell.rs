@@ -128,6 +128,6 @@ pub(crate) fn no_column(name: &str, there: &str) -> InstrumentError {
     unfit(
         &format!("the columns {there}"),
         &format!("a column `{name}`"),
-        "name the columns in a map (`--columns MAP.toml`)",
+        "name columns that are there, here or in the map or description of the log",
     )
 }

@@ -23,7 +23,7 @@ const FORMATS: [&str; 8] = [
 
 /// The advice to add a line to a table of the description.
 fn add(line: &str, table: &str) -> String {
-    format!("add `{line}` to `[{table}]` of the map (`--columns MAP.toml`)")
+    format!("add `{line}` to `[{table}]` of the map or description of the log")
 }
 
 /// Remedy for a line whose fields are not those expected.
@@ -114,7 +114,7 @@ pub(crate) fn of_date(text: &str) -> Option<String> {
         .collect();
     (!lines.is_empty()).then(|| {
         format!(
-            "give {} in place of a `unit` in `[time]` of the map (`--columns MAP.toml`)",
+            "give {} in place of a `unit` in `[time]` of the map or description of the log",
             lines.join(" or ")
         )
     })

@@ -119,7 +119,7 @@ pub(crate) fn correlations(panels: Vec<Panel>) -> Chart {
     let of = |model: &'static str| {
         let lines = panels
             .iter()
-            .flat_map(|panel| panel.lines.iter().zip(&panel.bands));
+            .flat_map(|panel| panel.lines.iter().zip(panel.bands.iter().cycle()));
         let own = lines.filter(move |(line, _)| line.label == model);
         own.flat_map(|(line, band)| line.values.iter().zip(&band.upper))
     };

@@ -204,7 +204,7 @@ fn parameter(plant: &LoadedPlant, effect: &str, one: &EffectEstimate, scale: f64
     let interval = one.interval.as_ref().map(|pieces| {
         pieces
             .iter()
-            .map(|[low, high]| [factor * low, factor * high])
+            .map(|[low, high]| [declared + factor * low, declared + factor * high])
             .collect()
     });
     Parameter {

@@ -244,7 +244,7 @@ impl<'d> Builder<'d> {
             weight,
         };
         let (kind, parameters) = match entry.kind {
-            Kind::Term => {
+            Kind::Term | Kind::Delay => {
                 let own = Role::Parameter(self.states + entry.size);
                 let knee = self.description.knee_of(entry).map(|knee| EffectParameter {
                     name: KNEE,
@@ -264,10 +264,6 @@ impl<'d> Builder<'d> {
                 let weight = RAMP + 1 + index;
                 let own = self.modulated(entry, Modulation::Weight(weight));
                 (EffectKind::Regressor, vec![size(own, Some(weight))])
-            }
-            Kind::Delay => {
-                let own = Role::Parameter(self.states + entry.size);
-                (EffectKind::Constant, vec![size(own, None)])
             }
             Kind::Play => {
                 let input = match place {

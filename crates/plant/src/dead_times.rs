@@ -8,7 +8,7 @@ use gyrocal_statistics::median_interval_s;
 
 use crate::solve::Solver;
 
-/// Rows of the grid: each up to the first number, each second one beyond, and no more than this part of a record.
+/// Rows of the grid: each up to the first number, each second one beyond, and no more than this part of the longest record.
 const EACH: usize = 32;
 const MOST: usize = 64;
 const PART: usize = 8;
@@ -19,11 +19,15 @@ impl Solver<'_> {
     pub(crate) fn with_dead_times(&self, values: &[f64], unknowns: &[usize]) -> Vec<f64> {
         let record = &*self.problem.record;
         let row_s = median_interval_s(&record.time_s);
-        let most = MOST.min(record.len() / PART);
+        let longest = record.records().map(|rows| rows.len()).max().unwrap_or(0);
+        let most = MOST.min(longest / PART);
         let grid = (0..=most).filter(|rows| *rows <= EACH || rows % 2 == 0);
         let grid: Vec<f64> = grid.map(|rows| rows as f64 * row_s).collect();
         let mut best = values.to_vec();
-        let mut least = self.promised(&best).unwrap_or(f64::INFINITY);
+        // A simulation that runs away by itself judges nothing.
+        let Some(mut least) = self.promised(&best) else {
+            return best;
+        };
         for unknown in unknowns {
             let Some(Column::Parameter { parameter }) = self.lines.get(*unknown) else {
                 continue;

@@ -297,19 +297,7 @@ impl Description {
             });
         let effects = rows(program, "plant_effects", effect)?;
         let delays = rows(program, "plant_delays", delay)?;
-        let has_time = |one: &EffectEntry| delays.iter().any(|delay| delay.time == one.size);
-        let late = effects
-            .iter()
-            .find(|one| one.kind == Kind::Delay && !has_time(one));
-        if let Some(late) = late {
-            return Err(PlantError::NoPlant {
-                origin: program.origin.clone(),
-                problem: format!(
-                    "the effect `{}` has no dead time, as an earlier version wrote it: run the script again",
-                    late.id
-                ),
-            });
-        }
+        refuse_earlier(program, &effects, &delays)?;
         Ok(Self {
             name: model_name.clone(),
             doc: doc.clone(),
@@ -330,6 +318,26 @@ impl Description {
             channels: rows(program, "plant_channels", channel)?,
             knees: rows(program, "plant_knees", knee)?,
         })
+    }
+}
+
+/// Refuses a program of an earlier version, in which a delay was a function of time.
+fn refuse_earlier(
+    program: &Program,
+    effects: &[EffectEntry],
+    delays: &[Delay],
+) -> Result<(), PlantError> {
+    let has_time = |one: &EffectEntry| delays.iter().any(|delay| delay.time == one.size);
+    let mut effects = effects.iter();
+    match effects.find(|one| one.kind == Kind::Delay && !has_time(one)) {
+        None => Ok(()),
+        Some(late) => Err(PlantError::NoPlant {
+            origin: program.origin.clone(),
+            problem: format!(
+                "the effect `{}` has no dead time, as an earlier version wrote it: run the script again",
+                late.id
+            ),
+        }),
     }
 }
 

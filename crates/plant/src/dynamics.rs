@@ -118,6 +118,7 @@ impl<'a> Dynamics<'a> {
 
     /// Sets the parameters in the step after a row.
     fn set_parameters(&mut self, row: usize, course: &Course) {
+        self.set_late(course);
         course.at(row, &mut self.parameters);
         for late in &mut self.late {
             late.beside = self.parameters[late.delay.constant];
@@ -151,7 +152,6 @@ impl<'a> Dynamics<'a> {
             course.add_jumps(row, &mut here);
             return here;
         }
-        self.set_late(course);
         self.set_parameters(row, course);
         let (n, h) = (self.sizes.states, self.interval_s(row));
         let mut here = states.to_vec();
@@ -260,7 +260,6 @@ impl<'a> Dynamics<'a> {
         let variances = declared.outputs.iter().map(|one| one.sigma.powi(2));
         let variances: Vec<f64> = variances.collect();
         let mut out = OutputsAt::new(self.sizes);
-        self.set_late(course);
         let mut step = StepMemory::new(self.sizes, p);
         for row in 0..rows {
             let here = &points[row * n..(row + 1) * n];

@@ -113,8 +113,7 @@ impl<'a> Informed<'a> {
         let rivals = findings.iter().flat_map(rivals);
         let rivals: Vec<&Effect> = rivals.filter_map(|rival| lasting(fitted, rival)).collect();
         unknowns.extend(rivals.iter().flat_map(|row| row.model_parameters()));
-        let mut own = rivals.iter().flat_map(|row| row.model_parameters());
-        let has_knee = own.any(|one| fitted.problem.sigma_of_knee(one).is_some());
+        let has_knee = rivals.iter().any(|row| row.has_knee());
         let mut seen = Vec::with_capacity(unknowns.len());
         unknowns.retain(|parameter| {
             let new = !seen.contains(parameter);

@@ -10,6 +10,7 @@ use gyrocal_hypothesis::ModelExtension;
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_statistics::format::short;
 use gyrocal_statistics::math::exp;
+use gyrocal_words::behind;
 
 use crate::dynamics::Dynamics;
 use crate::error::PlantError;
@@ -134,12 +135,12 @@ impl Failed {
         if let Some((cost, values)) = reached.as_deref() {
             let description = &problem.plant.description;
             let states = description.states.iter();
-            let states = states.map(|one| (format!("initial {}", one.id), one.initial, &one.unit));
+            let states = states.map(|one| (format!("initial {}", one.id), one.initial, &*one.unit));
             let parameters = description.parameters.iter();
-            let parameters = parameters.map(|one| (one.id.clone(), one.value, &one.unit));
+            let parameters = parameters.map(|one| (one.id.clone(), one.value, &*one.unit));
             let all = states.chain(parameters).zip(values);
             let all = all.map(|((name, declared, unit), value)| {
-                format!("{name} {} {unit}", short(declared + value, 4))
+                format!("{name} {}{}", short(declared + value, 4), behind(unit))
             });
             let all: Vec<String> = all.collect();
             reason += &format!(

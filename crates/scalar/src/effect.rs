@@ -249,6 +249,13 @@ impl Effect {
             })
     }
 
+    /// Whether where it bends is estimated.
+    #[must_use]
+    pub fn has_knee(&self) -> bool {
+        let mut all = self.parameters.iter();
+        all.any(|own| matches!(own.role, Role::Knee(_)))
+    }
+
     /// Its onset or time constant, if it has one.
     #[must_use]
     pub fn shape(&self) -> Option<&'static EffectParameter> {

@@ -10,7 +10,8 @@ pub(crate) fn with_sigma(estimate: f64, sigma: f64) -> String {
 }
 
 /// A unit behind a value, with a blank between them; `1` is no unit.
-pub(crate) fn behind(unit: &str) -> String {
+#[must_use]
+pub fn behind(unit: &str) -> String {
     match unit {
         "" | "1" => String::new(),
         unit => format!(" {unit}"),

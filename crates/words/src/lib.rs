@@ -24,4 +24,4 @@ pub use diagnosis::{
     time_is_temperature, typical_size, why_not_distinguished, would_distinguish,
 };
 pub use files::{command_files, few, input_files, joined};
-pub use format::{capitalised, counted, hours, size, time};
+pub use format::{behind, capitalised, counted, hours, size, time};

@@ -98,10 +98,11 @@ impl Log {
 
     /// The error of stamps that no steady clock gives from some sample on.
     pub(super) fn gap(&self, file: &FileColumns, from: usize) -> InstrumentError {
-        if self.interval_s <= 0.0
-            && let Some(rounded) = Rounded::of(&self.time_s)
-        {
-            return self.uneven_steps(file, rounded);
+        if self.interval_s <= 0.0 {
+            return match Rounded::of(&self.time_s) {
+                Some(rounded) => self.uneven_steps(file, rounded),
+                None => self.no_steady_clock(file, from),
+            };
         }
         let intervals = self.time_s.windows(2).map(|pair| pair[1] - pair[0]);
         let is_gap = |interval_s: &f64| *interval_s > GAP * self.interval_s;

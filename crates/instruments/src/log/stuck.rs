@@ -43,9 +43,12 @@ pub(super) fn refuse_stuck(
         run.end == whole.len() && (is_zero() || is_still())
     };
     if let Some(padding) = stretch(&whole, is_padding) {
-        let count = rows - padding.start;
+        let is_zero = columns.iter().all(|column| column[padding.start] == 0.0);
+        // The row that the others repeat is a reading, unless it is of zeros.
+        let first = padding.start + usize::from(!is_zero);
+        let count = rows - first;
         return Err(file.error_at(
-            padding.start,
+            first,
             InputErrorKind::Stuck,
             Unfit::Stuck,
             [

@@ -17,12 +17,6 @@ fn diagnosed(kind: Kind, seed: u64, rows_late: f64) -> Answer {
         hidden: ("drive.late_rows", rows_late),
         ..Setting::random(kind, seed, ROWS)
     };
-    let run = gyrocal_truth::plant::simulate(&setting, None);
-    std::fs::write(
-        format!("/tmp/dl/{kind:?}-{rows_late}.csv"),
-        run.csv(&["u"], &["y"]),
-    )
-    .unwrap();
     let plant = loaded(kind);
     let found = diagnose(
         &plant,
