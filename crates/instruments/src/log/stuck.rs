@@ -43,8 +43,9 @@ pub(super) fn refuse_stuck(
         run.end == whole.len() && (is_zero() || is_still())
     };
     if let Some(padding) = stretch(&whole, is_padding) {
-        let is_zero = columns.iter().all(|column| column[padding.start] == 0.0);
-        // The row that the others repeat is a reading, unless it is of zeros.
+        let mut gyros = columns.iter().take(3);
+        let is_zero = gyros.all(|column| column[padding.start] == 0.0);
+        // The row that the others repeat is a reading, unless its gyros are zero.
         let first = padding.start + usize::from(!is_zero);
         let count = rows - first;
         return Err(file.error_at(
