@@ -16,7 +16,10 @@ use crate::state::SearchState;
 /// lack more than it are not fitted.
 const MISJUDGED: f64 = 0.15;
 
-/// Most fits for one effect: of the nearest rivals that differ in the record.
+/// The same of a rival whose knee a fit moves: its score has the knee where it is declared.
+const MISJUDGED_KNEE: f64 = 0.6;
+
+/// Most fits for one effect, but for those of rivals with a knee: of the nearest rivals that differ in the record.
 const MOST_FITS: usize = 6;
 
 /// Statistic from which on a score about a fit says little of what an effect gains: that of a latitude wrong by a
@@ -48,12 +51,16 @@ pub(crate) fn fit_rivals<F: FittedModel>(
 ) {
     let named = compared.accepted[compared.index].hypothesis;
     let penalised = scores.penalised(named);
-    let widest = CONFIDENCE_SET_DEVIANCE + MISJUDGED * own;
+    let has_knee = |other: usize| hypotheses[other].effect.has_knee();
+    let widest = |other: usize| match has_knee(other) {
+        true => CONFIDENCE_SET_DEVIANCE + MISJUDGED_KNEE * own,
+        false => CONFIDENCE_SET_DEVIANCE + MISJUDGED * own,
+    };
     let mut near: Vec<(usize, f64)> = (0..hypotheses.len())
         .filter(|other| *other != named && scores.best[*other].is_some())
         .filter(|other| !hypotheses[*other].is_jump)
         .map(|other| (other, penalised - scores.penalised(other)))
-        .filter(|(_, deficit)| *deficit < widest)
+        .filter(|(other, deficit)| *deficit < widest(*other))
         .collect();
     near.sort_by(|a, b| a.1.total_cmp(&b.1));
     let mut fitted: Vec<(usize, f64)> = Vec::new();
@@ -66,7 +73,7 @@ pub(crate) fn fit_rivals<F: FittedModel>(
             .find(|(one, _)| is_same(bank, scores, hypotheses, *one, other));
         let gained = match twin {
             Some((_, gained)) => *gained,
-            None if fitted.len() >= MOST_FITS => continue,
+            None if fitted.len() >= MOST_FITS && !has_knee(other) => continue,
             None => match in_place(compared, context, scores, hypotheses, other) {
                 Some(gained) => gained,
                 None => continue,
