@@ -16,11 +16,13 @@ use crate::state::SearchState;
 /// lack more than it are not fitted.
 const MISJUDGED: f64 = 0.15;
 
-/// The same of a rival whose knee a fit moves: its score has the knee where it is declared.
-const MISJUDGED_KNEE: f64 = 0.6;
+/// The same of a rival whose knee a fit moves: its score has the knee where it is declared, which may be far from where
+/// it is.
+const MISJUDGED_KNEE: f64 = 1.0;
 
-/// Most fits for one effect, but for those of rivals with a knee: of the nearest rivals that differ in the record.
+/// Most fits for one effect: of the nearest rivals that differ in the record, and of the nearest with a knee.
 const MOST_FITS: usize = 6;
+const MOST_FITS_OF_KNEES: usize = 4;
 
 /// Statistic from which on a score about a fit says little of what an effect gains: that of a latitude wrong by a
 /// tenth of a degree.
@@ -63,6 +65,15 @@ pub(crate) fn fit_rivals<F: FittedModel>(
         .filter(|(other, deficit)| *deficit < widest(*other))
         .collect();
     near.sort_by(|a, b| a.1.total_cmp(&b.1));
+    let is_enough = |fitted: &[(usize, f64)], other: usize| {
+        let alike = fitted.iter();
+        let alike = alike.filter(|(one, _)| has_knee(*one) == has_knee(other));
+        let most = match has_knee(other) {
+            true => MOST_FITS_OF_KNEES,
+            false => MOST_FITS,
+        };
+        alike.count() >= most
+    };
     let mut fitted: Vec<(usize, f64)> = Vec::new();
     for (other, _) in near {
         if context.budget.is_spent(compared.stage.fitted.work()) {
@@ -73,7 +84,7 @@ pub(crate) fn fit_rivals<F: FittedModel>(
             .find(|(one, _)| is_same(bank, scores, hypotheses, *one, other));
         let gained = match twin {
             Some((_, gained)) => *gained,
-            None if fitted.len() >= MOST_FITS && !has_knee(other) => continue,
+            None if is_enough(&fitted, other) => continue,
             None => match in_place(compared, context, scores, hypotheses, other) {
                 Some(gained) => gained,
                 None => continue,

@@ -264,8 +264,11 @@ impl FittedPlant {
         start: Iterate,
     ) -> Result<Self, PlantError> {
         let solver = Solver::new(&self.problem, extension, noise.clone());
-        // A rival that steps on the trajectory do not reach keeps its score, unless the model itself needed others.
-        let mut solution = if self.solution.is_damped || !noise.is_declared() {
+        // A rival that steps on the trajectory do not reach keeps its score, unless the model itself needed others, or
+        // bends.
+        let mut own = extension.parameters.iter();
+        let bends = own.any(|(parameter, _)| self.problem.sigma_of_knee(*parameter).is_some());
+        let mut solution = if self.solution.is_damped || bends || !noise.is_declared() {
             solver.solve(start)?
         } else {
             solver.on_trajectory(start)?

@@ -18,6 +18,7 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 use crate::diagnosed::Diagnosed;
 use crate::dynamics::Dynamics;
 use crate::error::PlantError;
+use crate::first_values::KNEES;
 use crate::fitted::FittedPlant;
 use crate::later_starts::eliminated;
 use crate::lines::{Course, initial, parameters_of};
@@ -26,10 +27,6 @@ use crate::problem::Problem;
 use crate::record::{NamedRecord, PlantRecord};
 use crate::solve::{Solution, Solver};
 use gyrocal_words::plant::mean_ratio;
-
-/// Knees of rivals over where the search takes them to be: a rival of no size has no derivative by its knee, and is as
-/// near as the nearest of these.
-const KNEES: [f64; 7] = [1.0, 0.25, 0.5, 0.75, 1.25, 1.5, 2.0];
 
 /// Information on parameters of the model, by their index in the table of the plant, from the records and from a run.
 struct Informed<'a> {
@@ -133,6 +130,7 @@ impl<'a> Informed<'a> {
         let columns: Vec<usize> = core::iter::once(0)
             .chain(places.map(|place| place + 1))
             .collect();
+        // A rival of no size has no derivative by its knee, and is as near as the nearest of a grid.
         let knees = if has_knee { &KNEES[..] } else { &KNEES[..1] };
         let run = with_no_outputs(run);
         let all = knees.iter().map(|share| {

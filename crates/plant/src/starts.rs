@@ -161,7 +161,7 @@ fn simulated(
 ) -> Result<Solution, PlantError> {
     let extension = ModelExtension::default();
     let solver = Solver::new(problem, &extension, noise.clone());
-    let values = &solver.with_dead_times(values, &solver.dead_times());
+    let values = &solver.with_first_values(values, &solver.searched());
     let course = solver.course(values);
     let mut dynamics = solver.dynamics();
     let points = dynamics.simulate(&course, &problem.initial(values));

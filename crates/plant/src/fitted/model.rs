@@ -69,11 +69,9 @@ impl FittedModel for FittedPlant {
     fn refitted(&self, extension: &ModelExtension) -> Result<Self, PlantError> {
         let mut start = self.start_of(extension);
         let solver = Solver::new(&self.problem, extension, self.noise.clone());
-        let mut new = solver.dead_times();
+        let mut new = solver.searched();
         new.retain(|place| *place >= self.problem.nominal() && start.values[*place] == 0.0);
-        if !new.is_empty() {
-            start.values = solver.with_dead_times(&start.values, &new);
-        }
+        start.values = solver.with_first_values(&start.values, &new);
         self.solved(extension, self.noise.clone(), start)
     }
 

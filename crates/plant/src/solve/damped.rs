@@ -28,10 +28,11 @@ const LONGEST: f64 = 2.0;
 /// Information along a direction over the largest, scaled, below which there is none.
 const NONE: f64 = 1e-12;
 
-/// A fall that ends the fit where no step gains, beside process noise: the covariance of the innovations moves with the
-/// trajectory, which the steps do not know. A score then differs from zero by less than half its standard deviation,
+/// A fall that ends the fit where no step gains, beside process noise and of a model whose knee is estimated: the
+/// covariance of the innovations moves with the trajectory, and a row that passes the knee bends the cost, which the
+/// steps do not know. A score then differs from zero by less than half its standard deviation,
 /// and those of effects are taken with the parameters free.
-const STALLED_IN_NOISE: f64 = 0.1;
+const STALLED_ROUGH: f64 = 0.1;
 
 /// Share of the cost that rounding of a long record moves.
 const ROUNDING: f64 = 1e-12;
@@ -49,15 +50,22 @@ impl Solver<'_> {
         self.problem.plant.description.noises.is_empty() && self.noise.loose.is_empty()
     }
 
+    /// Whether a knee is among the unknowns.
+    fn bends(&self) -> bool {
+        let knees = &self.problem.plant.description.knees;
+        let mut own = self.parameters.iter();
+        own.any(|own| knees.iter().any(|knee| knee.constant == *own))
+    }
+
     /// From some values, until no step gains.
     pub(super) fn damped(&self, values: &[f64]) -> Result<Solution, PlantError> {
         let mut dynamics = self.dynamics();
         let mut at = self.simulated(&mut dynamics, values)?;
         let mut damping = FIRST;
-        let stalled = if self.noise.process.is_empty() {
+        let stalled = if self.noise.process.is_empty() && !self.bends() {
             STALLED
         } else {
-            STALLED_IN_NOISE
+            STALLED_ROUGH
         };
         for index in 0..MAX_STEPS {
             let promised =
