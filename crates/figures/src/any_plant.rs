@@ -1,13 +1,12 @@
 //! Diagnosis of any plant: five simulated plants with hidden effects.
 
 mod coloured;
-mod dead_times;
 mod effort;
 mod gauges;
 pub(crate) mod hidden;
-mod knees;
 mod offsets;
 mod oracle;
+mod searched;
 mod second;
 mod unknown;
 
@@ -51,8 +50,7 @@ pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
     figures.extend(unknown::figures(context, &plants)?);
     figures.extend(coloured::figures(context, &plants)?);
     figures.extend(offsets::figures(context, &plants)?);
-    figures.extend(knees::figures(context, &plants)?);
-    figures.extend(dead_times::figures(context, &plants)?);
+    figures.extend(searched::figures(context, &plants)?);
     figures.push(effort::lines()?);
     figures.push(effort::duration()?.timed(context.is_small()));
     figures.push(effort::interpreted(&plants[Kind::Duffing as usize])?);
