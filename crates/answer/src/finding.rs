@@ -95,8 +95,9 @@ pub struct Alternative {
     /// How it stands to the finding.
     pub kind: AlternativeKind,
     /// Log-likelihood of the named effect less that of this one \[nats\], after both are penalised for their
-    /// searches, and an effect in which the named one is nested for its freedom; never negative. Zero of an exact
-    /// equivalent, `None` of an effect that was not searched.
+    /// searches, and an effect in which the named one is nested for its freedom; never negative. Where what is left of
+    /// a plant is correlated from row to row, it is that of as many independent rows as these are worth. Zero of an
+    /// exact equivalent, `None` of an effect that was not searched.
     pub log_likelihood_deficit: Option<f64>,
     /// Values that the parameters of an exact equivalent would have to have; empty of others, and where they were
     /// not computed.

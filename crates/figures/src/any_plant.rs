@@ -45,12 +45,12 @@ pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
     let plants = plants()?;
     let mut figures = clean(context, &plants)?;
     figures.extend(context.measure(&hidden::population(&plants)?, &hidden::rows())?);
+    figures.extend(searched::figures(context, &plants)?);
     figures.push(gauges::figure(&plants)?);
     figures.extend(starts(context, &plants)?);
     figures.extend(unknown::figures(context, &plants)?);
     figures.extend(coloured::figures(context, &plants)?);
     figures.extend(offsets::figures(context, &plants)?);
-    figures.extend(searched::figures(context, &plants)?);
     figures.push(effort::lines()?);
     figures.push(effort::duration()?.timed(context.is_small()));
     figures.push(effort::interpreted(&plants[Kind::Duffing as usize])?);

@@ -43,20 +43,24 @@ pub(crate) struct Compared<'a, F> {
 }
 
 /// Replaces the statistics of the nearest rivals of an accepted effect by those of fits with each of them
-/// in its place; `own` is the statistic of the effect. One that cannot be fitted keeps its score.
+/// in its place; `own` is the statistic of the effect, `inflation` that of the model. One that cannot be fitted keeps its
+/// score.
 pub(crate) fn fit_rivals<F: FittedModel>(
     compared: &Compared<'_, F>,
     context: &SearchContext<'_>,
     (bank, hypotheses): (&ScoreBank, &[Hypothesis]),
     scores: &mut Scores<'_>,
-    own: f64,
+    (own, inflation): (f64, f64),
 ) {
     let named = compared.accepted[compared.index].hypothesis;
     let penalised = scores.penalised(named);
     let has_knee = |other: usize| hypotheses[other].effect.has_knee();
-    let widest = |other: usize| match has_knee(other) {
-        true => CONFIDENCE_SET_DEVIANCE + MISJUDGED_KNEE * own,
-        false => CONFIDENCE_SET_DEVIANCE + MISJUDGED * own,
+    let widest = |other: usize| {
+        let misjudged = match has_knee(other) {
+            true => MISJUDGED_KNEE,
+            false => MISJUDGED,
+        };
+        inflation * CONFIDENCE_SET_DEVIANCE + misjudged * own
     };
     let mut near: Vec<(usize, f64)> = (0..hypotheses.len())
         .filter(|other| *other != named && scores.best[*other].is_some())

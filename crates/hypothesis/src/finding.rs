@@ -31,7 +31,8 @@ pub struct Alternative {
     /// Its public id.
     pub effect: &'static str,
     /// Log-likelihood of the named effect less its own, search penalties subtracted, and that of an effect
-    /// in which the named one is nested lowered by half of [`NESTED_MODEL_CHI2`](crate::NESTED_MODEL_CHI2); never negative.
+    /// in which the named one is nested lowered by half of [`NESTED_MODEL_CHI2`](crate::NESTED_MODEL_CHI2), over the
+    /// inflation of the model ([`FittedModel::inflation`](crate::FittedModel::inflation)); never negative.
     pub log_likelihood_deficit: f64,
     /// The nominal parameters with it in the place of the named effect; `None` of a jump of states,
     /// and where the search ended before it was fitted.

@@ -169,6 +169,15 @@ pub trait FittedModel: Clone {
         false
     }
 
+    /// How many times larger than of white noise differences of twice the log-likelihood vary, since what is left is
+    /// correlated from row to row; one where it is as the fit believes it to be. Sets are as much wider.
+    ///
+    /// # Errors
+    /// Those of a pass over the record.
+    fn inflation(&self) -> Result<f64, Self::Error> {
+        Ok(1.0)
+    }
+
     /// Work of all passes that were made so far, in a unit that grows with rows and columns; zero of a
     /// model that does not count it, whose searches have no budget.
     fn work(&self) -> u64 {

@@ -87,12 +87,14 @@ fn evaluate_with<F: FittedModel>(
         searched: own.searched,
     });
     let statistic = own_score.statistic;
-    let reaches = if by_fits {
+    let (reaches, inflation) = if by_fits {
+        let inflation = stage.fitted.inflation()?;
         let of = (&bank, hypotheses.as_slice());
-        fit_rivals(compared, context, of, &mut scores, statistic);
-        reaches(&bank, &hypotheses, &scores, context.options.seed)
+        fit_rivals(compared, context, of, &mut scores, (statistic, inflation));
+        let reaches = reaches(&bank, &hypotheses, &scores, context.options.seed);
+        (reaches, inflation)
     } else {
-        vec![CONFIDENCE_SET_DEVIANCE; hypotheses.len()]
+        (vec![CONFIDENCE_SET_DEVIANCE; hypotheses.len()], 1.0)
     };
     // The penalty of a jump is for the test of every step and not for its directions.
     let (penalised, tested) = if set.hypotheses[own.hypothesis].is_jump {
@@ -118,7 +120,8 @@ fn evaluate_with<F: FittedModel>(
     let mut alternatives = alternatives(
         &scores,
         &hypotheses,
-        (own.hypothesis, penalised, &reaches),
+        (own.hypothesis, penalised),
+        (&reaches, inflation),
         estimates,
     );
     if by_fits {
@@ -207,7 +210,8 @@ fn prior_margin(hypotheses: &[Hypothesis], named: usize, other: usize) -> f64 {
 fn alternatives(
     scores: &Scores<'_>,
     hypotheses: &[Hypothesis],
-    (named, penalised, reaches): (usize, f64, &[f64]),
+    (named, penalised): (usize, f64),
+    (reaches, inflation): (&[f64], f64),
     estimates: impl Fn(&[usize]) -> Option<NominalEstimate>,
 ) -> Vec<Alternative> {
     let equivalents = hypotheses[named].effect.equivalents;
@@ -217,10 +221,10 @@ fn alternatives(
                 && scores.best[*other].is_some()
                 && !equivalents.contains(&hypotheses[*other].id())
         })
-        .filter(|other| penalised - scores.penalised(*other) < reaches[*other])
+        .filter(|other| penalised - scores.penalised(*other) < inflation * reaches[*other])
         .map(|other| Alternative {
             effect: hypotheses[other].id(),
-            log_likelihood_deficit: 0.5
+            log_likelihood_deficit: 0.5 / inflation
                 * (penalised - scores.penalised(other) + prior_margin(hypotheses, named, other))
                     .max(0.0),
             nominal: variant(&scores.best[other], &hypotheses[other]).and_then(&estimates),

@@ -8,6 +8,7 @@ use nalgebra::{DMatrix, DVector};
 use super::FittedPlant;
 use crate::error::PlantError;
 use crate::lines::of_parameters;
+use crate::series::{inflation, of_output};
 use crate::solve::Solver;
 
 /// Smallest range of a covariate that a dependence on it is looked for over, as a share of its size.
@@ -111,6 +112,13 @@ impl FittedModel for FittedPlant {
 
     fn sets_need_fits(&self) -> bool {
         true
+    }
+
+    fn inflation(&self) -> Result<f64, PlantError> {
+        let whitened = self.whitened()?;
+        let outputs = 0..self.loaded().description.outputs.len();
+        let each = outputs.map(|output| inflation(&of_output(&whitened, output)));
+        Ok(each.fold(1.0, f64::max))
     }
 
     fn signatures_gram(&self, further: &[Column]) -> Result<DMatrix<f64>, PlantError> {
