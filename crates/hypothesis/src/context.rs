@@ -79,9 +79,11 @@ impl<'t> SearchContext<'t> {
     ) -> Self {
         let plant = nominal.plant();
         let effects = selection.effects.iter().copied();
+        let mut set = HypothesisSet::new(plant, &rows, &selection.effects);
+        set.add_rivals(plant, &rows, &selection.rivals);
         Self {
             plant,
-            set: HypothesisSet::new(plant, &rows, &selection.effects),
+            set,
             walks: effects
                 .filter(|effect| effect.kind == EffectKind::RandomWalk)
                 .collect(),

@@ -315,7 +315,8 @@ pub(crate) fn open_hypotheses<F: FittedModel>(
     let taken: Vec<usize> = accepted.chain(state.inseparable.iter().copied()).collect();
     let all = context.set.hypotheses.iter().enumerate();
     all.map(|(index, hypothesis)| {
-        hypothesis.masked(taken.contains(&index) || context.set.is_equivalent(index, &taken))
+        let is_taken = taken.contains(&index) || context.set.is_equivalent(index, &taken);
+        hypothesis.masked(is_taken || !hypothesis.can_be_named)
     })
     .collect()
 }

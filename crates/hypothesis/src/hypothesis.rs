@@ -47,6 +47,8 @@ pub struct Hypothesis {
     pub(crate) variants: Vec<Variant>,
     /// Whether it is a jump of states, which is tested in every step by itself.
     pub(crate) is_jump: bool,
+    /// Whether it may be named: others are compared with what is named, in sets alone.
+    pub(crate) can_be_named: bool,
 }
 
 impl Hypothesis {
@@ -59,6 +61,7 @@ impl Hypothesis {
             effect: self.effect,
             variants: Vec::new(),
             is_jump: false,
+            can_be_named: self.can_be_named,
         }
     }
 
@@ -95,6 +98,8 @@ pub struct Unavailable {
 pub struct Selection {
     /// Effects to test, in the order of the plant's table.
     pub effects: Vec<&'static Effect>,
+    /// Effects that are not named, and that a set holds where the record does not tell them from a named one.
+    pub rivals: Vec<&'static Effect>,
     /// Effects that the record cannot show.
     pub unavailable: Vec<Unavailable>,
 }
@@ -131,10 +136,7 @@ impl HypothesisSet {
             onset_rows,
         };
         for effect in effects {
-            // A random walk is noise and has no signature.
-            if effect.kind != EffectKind::RandomWalk {
-                set.add(plant, rows, effect);
-            }
+            set.add(plant, rows, effect);
         }
         set
     }
@@ -152,6 +154,10 @@ impl HypothesisSet {
     }
 
     fn add(&mut self, plant: &Plant, rows: &Rows, effect: &'static Effect) {
+        // A random walk is noise and has no signature.
+        if effect.kind == EffectKind::RandomWalk {
+            return;
+        }
         let is_jump = effect.kind == EffectKind::StateJump;
         let shapes: Vec<Option<f64>> = match effect.shape().map(|shape| shape.role) {
             _ if is_jump => Vec::new(),
@@ -191,7 +197,19 @@ impl HypothesisSet {
             effect,
             variants,
             is_jump,
+            can_be_named: true,
         });
+    }
+
+    /// Adds hypotheses that are compared with what is named, and not named.
+    pub(crate) fn add_rivals(&mut self, plant: &Plant, rows: &Rows, rivals: &[&'static Effect]) {
+        let first = self.hypotheses.len();
+        for effect in rivals {
+            self.add(plant, rows, effect);
+        }
+        for own in &mut self.hypotheses[first..] {
+            own.can_be_named = false;
+        }
     }
 
     /// The same hypotheses with the columns of those that are `kept` alone: the others have no variant.

@@ -86,7 +86,8 @@ fn best_of<F: FittedModel>(
         let is_without_change = !has_shape && own.any(|own| own == index);
         let statistic = coarse.best[index].map_or(0.0, |best| best.statistic);
         let share = if has_shape { NEAR_LARGEST } else { 1.0 };
-        if is_without_change || hypothesis.is_jump || statistic < share * least {
+        let is_out = hypothesis.is_jump || !hypothesis.can_be_named;
+        if is_without_change || is_out || statistic < share * least {
             *hypothesis = hypothesis.masked(true);
         }
     }

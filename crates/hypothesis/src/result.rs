@@ -105,7 +105,8 @@ fn evaluate_with<F: FittedModel>(
             scores.tested(own.hypothesis),
         )
     };
-    let others = (0..hypotheses.len()).filter(|other| *other != own.hypothesis);
+    let others = (0..hypotheses.len())
+        .filter(|other| *other != own.hypothesis && hypotheses[*other].can_be_named);
     let better = others
         .map(|other| {
             let margin = prior_margin(&hypotheses, own.hypothesis, other);

@@ -312,6 +312,7 @@ mod tests {
                 effect,
                 variants: Vec::new(),
                 is_jump: false,
+                can_be_named: true,
             })
             .collect();
         let null = NullDistribution::without_search(hypotheses.len());

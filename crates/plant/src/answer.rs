@@ -17,6 +17,7 @@ use crate::catalogue::KNEE;
 use crate::description::Kind;
 use crate::error::PlantError;
 use crate::fitted::FittedPlant;
+use crate::knee_interval::profile;
 use crate::loaded::LoadedPlant;
 use crate::prediction::{errors, horizon_s};
 use crate::record::PlantRecord;
@@ -40,7 +41,8 @@ pub(crate) fn answer(
     let record = fitted.record();
     let (nominal, extended) = (searched.nominal.simulated(), fitted.simulated());
     let findings = searched.findings.iter();
-    let findings: Vec<Finding> = findings.map(|one| finding(fitted, one)).collect();
+    let findings: Result<Vec<Finding>, _> = findings.map(|one| finding(fitted, one)).collect();
+    let findings = findings?;
     let remainder = remainder(plant, searched)?;
     let has_findings = !(findings.is_empty() && remainder.unmodelled.is_empty());
     let search_complete = !searched.is_cut;
@@ -122,7 +124,10 @@ fn not_searched(searched: &Searched<FittedPlant>, selection: &Selection) -> Vec<
     unavailable.chain(without_score).collect()
 }
 
-fn finding(fitted: &FittedPlant, found: &gyrocal_hypothesis::Finding) -> Finding {
+fn finding(
+    fitted: &FittedPlant,
+    found: &gyrocal_hypothesis::Finding,
+) -> Result<Finding, PlantError> {
     let plant = fitted.loaded();
     let mut effects = plant.description.effects.iter();
     let own = effects.find(|effect| effect.id == found.effect);
@@ -131,6 +136,7 @@ fn finding(fitted: &FittedPlant, found: &gyrocal_hypothesis::Finding) -> Finding
     let mut parameters: Vec<Parameter> = all
         .map(|one| parameter(plant, found.effect, one, scale))
         .collect();
+    profile(fitted, own, &mut parameters)?;
     let in_record = in_its_record(fitted.record(), &mut parameters);
     let alternative = |effect: &str, kind, deficit| Alternative {
         effect: effect.to_owned(),
@@ -146,7 +152,7 @@ fn finding(fitted: &FittedPlant, found: &gyrocal_hypothesis::Finding) -> Finding
         alternative(other.effect, AlternativeKind::NotExcluded, deficit)
     });
     let none = found.none_of_these;
-    Finding {
+    Ok(Finding {
         effect: found.effect.to_owned(),
         name: own.map_or_else(String::new, |own| own.name.clone()),
         kind: FindingKind::Cause,
@@ -163,7 +169,7 @@ fn finding(fitted: &FittedPlant, found: &gyrocal_hypothesis::Finding) -> Finding
         formula: own.map(|own| own.formula.clone()),
         gain_nats: None,
         accepted: Some(true),
-    }
+    })
 }
 
 /// Puts an onset on the clock of the record that it lies in; gives the number of that record, from one, if

@@ -14,8 +14,8 @@ pub struct ExtensionTerm {
     pub effect: String,
     /// Its estimated size.
     pub value: f64,
-    /// Standard deviation of the size.
-    pub sigma: f64,
+    /// Standard deviation of the size; `None` where it has only an interval.
+    pub sigma: Option<f64>,
     /// Where it bends, of a term that has a knee.
     pub knee: Option<f64>,
 }
@@ -44,7 +44,7 @@ impl Extension {
                     extension.terms.push(ExtensionTerm {
                         effect: finding.effect.clone(),
                         value: size.estimate,
-                        sigma: size.sigma.unwrap_or(0.0),
+                        sigma: size.sigma,
                         knee: finding
                             .parameters
                             .iter()
@@ -91,10 +91,12 @@ impl Extension {
                 for term in &self.terms {
                     let start = format!("{name}.extend(\"{}\"", term.effect);
                     if !script.contains(&start) {
-                        let (value, sigma) = (rounded(term.value, 6), rounded(term.sigma, 2));
+                        let value = rounded(term.value, 6);
+                        let sigma = term.sigma.map(|own| format!("  # ± {}", rounded(own, 2)));
+                        let sigma = sigma.unwrap_or_default();
                         let knee = term.knee.map(|knee| format!(", knee={}", rounded(knee, 6)));
                         let knee = knee.unwrap_or_default();
-                        text += &format!("{indent}{start}, {value}{knee})  # ± {sigma}\n");
+                        text += &format!("{indent}{start}, {value}{knee}){sigma}\n");
                     }
                 }
             }
@@ -129,7 +131,7 @@ mod tests {
             terms: vec![ExtensionTerm {
                 effect: "v_rate.x^3".to_owned(),
                 value: -0.050_142_37,
-                sigma: 4.612e-4,
+                sigma: Some(4.612e-4),
                 knee: None,
             }],
             left_out: Vec::new(),

@@ -110,10 +110,14 @@ pub(crate) fn standing(
         let no_time = no_longer
             .iter()
             .any(|step| step.refused == Some(Refusal::FunctionsOfTime));
-        selection.effects.retain(|effect| {
+        let (go_on, rest): (Vec<_>, Vec<_>) = selection.effects.into_iter().partition(|effect| {
             let is_open = searches < NAMES || names(&stand, effect.id);
             is_open && !names(&no_longer, effect.id) && !(no_time && is_of_time(effect.id))
         });
+        selection.effects = go_on;
+        // What no left-out part speaks for beside a name may still be what the name stands for.
+        let rest = rest.into_iter().filter(|effect| !is_of_time(effect.id));
+        selection.rivals.extend(rest);
         refused.extend(no_longer);
         searches += 1;
     }

@@ -63,6 +63,7 @@ mod generated;
 mod identifiability;
 mod interpreted;
 mod judged;
+mod knee_interval;
 mod late;
 mod later_starts;
 mod left_out;

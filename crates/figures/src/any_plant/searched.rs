@@ -60,8 +60,8 @@ pub(super) fn figures(context: &Context, plants: &[LoadedPlant]) -> Result<Vec<F
     );
     let name = "any plant: a knee of d >= 8: in a set";
     let own = [
-        "... its knee in the 95 % interval",
         "... its size in the 95 % interval",
+        "... its knee in the 95 % interval",
     ];
     let another = "... another effect named beside it";
     let mut figures = context.measure(&knees, &rows(name, another, &own))?;
@@ -94,9 +94,9 @@ fn rows(
 /// An oscillator with a stop or a dead zone, or tanks with an overflow.
 fn knee(kind: Kind, seed: u64) -> Hidden {
     let mut random = Stream::new(seed, 23);
-    let (effects, usual): (&[_], f64) = match kind {
-        Kind::Tanks => (&["upper_rate.above(upper)"], 10.0),
-        _ => (&["v_rate.above(x)", "v_rate.beyond(x)"], 1.0),
+    let effects: &[_] = match kind {
+        Kind::Tanks => &["upper_rate.above(upper)"],
+        _ => &["v_rate.above(x)", "v_rate.beyond(x)"],
     };
     let effect = effects[seed as usize % effects.len()];
     let setting = Setting {
@@ -105,11 +105,16 @@ fn knee(kind: Kind, seed: u64) -> Hidden {
         ..Setting::random(kind, seed, ROWS)
     };
     let setting = with_strength(&setting, random.log_between(STRENGTHS[0], STRENGTHS[1]));
+    let mut truth = vec![("size", setting.hidden.1)];
+    // No record of the lower level tells the scale of the upper one, which the place of the overflow is on.
+    if kind != Kind::Tanks {
+        truth.push(("knee", setting.knee));
+    }
     Hidden {
         effect,
         // A level that never reaches its knee has no size that makes it act.
         acts: strength(&setting) >= STRENGTHS[0],
-        truth: vec![("knee", setting.knee * usual), ("size", setting.hidden.1)],
+        truth,
         setting,
     }
 }
@@ -143,7 +148,14 @@ fn said(hidden: Hidden, plant: &LoadedPlant) -> Result<Said, Error> {
     let named = findings.iter().find(|one| one.effect == hidden.effect);
     let covers = hidden.truth.iter().map(|(name, truth)| {
         let own = named?.parameters.iter().find(|own| own.name == *name)?;
-        Some((own.estimate - truth).abs() <= NORMAL_95 * own.sigma?)
+        match own.interval.as_deref() {
+            Some(pieces) => Some(
+                pieces
+                    .iter()
+                    .any(|[low, high]| low <= truth && truth <= high),
+            ),
+            None => Some((own.estimate - truth).abs() <= NORMAL_95 * own.sigma?),
+        }
     });
     Ok(Said {
         fits: found.is_some() && hidden.acts,
