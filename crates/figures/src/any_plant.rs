@@ -118,7 +118,7 @@ fn far_start(plant: &LoadedPlant, mut random: Stream) -> Vec<f64> {
 }
 
 /// Whether the set of a finding holds an effect, or one that no record tells from it.
-fn holds(found: &Finding, id: &str) -> bool {
+pub(crate) fn holds(found: &Finding, id: &str) -> bool {
     found.set().chain(found.equivalents()).any(|own| own == id)
 }
 

@@ -63,46 +63,20 @@ pub(crate) fn profile(
         sigma: 0.0,
         at: fitted.solution.at.clone(),
     };
-    let side = |sign: f64| {
-        let mut held: Vec<Held> = Vec::new();
-        let mut distance = sign * FIRST * own;
-        while held.len() < MOST {
-            let start = held.last().map_or(&best.at, |last| &last.at);
-            let Some(next) = held_at(fitted, knee, best.knee + distance, start) else {
-                break;
-            };
-            let is_beyond = next.cost - best.cost > limit;
-            held.push(next);
-            if is_beyond {
-                break;
-            }
-            distance *= GROWTH;
-        }
-        held
-    };
-    let sides = [side(-1.0), side(1.0)];
-    let least = sides
-        .iter()
-        .flatten()
-        .map(|one| one.cost)
-        .fold(best.cost, f64::min);
-    let mut knees = [best.knee; 2];
+    let sides = [-1.0, 1.0].map(|sign| side(fitted, knee, (&best, limit), sign * FIRST * own));
+    let mut all = vec![&best];
+    all.extend(sides.iter().flatten());
+    let least = all.iter().map(|one| one.cost).fold(f64::INFINITY, f64::min);
+    let knees = sides
+        .each_ref()
+        .map(|side| side.last().unwrap_or(&best).knee);
     let mut sizes = [best.size; 2];
-    for (end, side) in sides.iter().enumerate() {
-        let mut before = (best.knee, 0.0);
-        for one in side {
-            let deviance = (one.cost - least).max(0.0);
-            let reach = (limit - deviance).max(0.0).sqrt() * one.sigma;
-            sizes = [
-                sizes[0].min(one.size - reach),
-                sizes[1].max(one.size + reach),
-            ];
-            // Near its least a deviance is a square.
-            let root = deviance.sqrt();
-            let within = (limit.sqrt() - before.1) / (root - before.1).max(f64::MIN_POSITIVE);
-            knees[end] = before.0 + within.clamp(0.0, 1.0) * (one.knee - before.0);
-            before = (one.knee, root);
-        }
+    for one in all {
+        let reach = (limit - (one.cost - least)).max(0.0).sqrt() * one.sigma;
+        sizes = [
+            sizes[0].min(one.size - reach),
+            sizes[1].max(one.size + reach),
+        ];
     }
     for own in parameters.iter_mut() {
         let (declared, [low, high], estimate) = match own.name.as_str() {
@@ -116,6 +90,31 @@ pub(crate) fn profile(
             .then_some((high - low) / (2.0 * NORMAL_95 * (limit / LIMIT).sqrt()));
     }
     Ok(())
+}
+
+/// Models with the knee farther and farther off, the last where the deviance is the limit.
+fn side(fitted: &FittedPlant, knee: &Knee, (best, limit): (&Held, f64), first: f64) -> Vec<Held> {
+    let limit = limit.sqrt();
+    let root = |of: &Held| (of.cost - best.cost).max(0.0).sqrt();
+    let mut held: Vec<Held> = Vec::new();
+    let mut distance = first;
+    while held.len() < MOST {
+        let last = held.last().unwrap_or(best);
+        let Some(next) = held_at(fitted, knee, best.knee + distance, &last.at) else {
+            break;
+        };
+        let [before, beyond] = [last, &next].map(root);
+        if beyond > limit {
+            // Near its least a deviance is a square.
+            let share = (limit - before) / (beyond - before);
+            let end = last.knee + share * (next.knee - last.knee);
+            held.extend(held_at(fitted, knee, end, &last.at));
+            break;
+        }
+        held.push(next);
+        distance *= GROWTH;
+    }
+    held
 }
 
 /// The places of size and knee among the unknowns of a model.
