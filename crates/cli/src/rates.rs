@@ -46,9 +46,15 @@ pub(crate) fn run(arguments: &RatesArguments) -> Result<Reply, Failure> {
     inputs.push(&arguments.log_description);
     let json = arguments.json.as_deref();
     outputs::check(&inputs, json)?;
-    let (report, notes) = work(arguments)?;
+    let (report, mut notes) = work(arguments)?;
     let manifest = manifest("", 0, &inputs)?;
-    let mut answer = Reply::of_part(&of_rates(&manifest, &report, &notes));
+    let assumption = report.assumption();
+    notes.extend(assumption.iter().map(|words| format!("Assumed: {words}.")));
+    let mut part = of_rates(&manifest, &report, &notes);
+    if let Some(words) = assumption {
+        part.first.fact("assumed", words);
+    }
+    let mut answer = Reply::of_part(&part);
     answer.write_json(json, &ResultFile::new(manifest, &report))?;
     Ok(answer)
 }

@@ -88,8 +88,7 @@ impl BaselineMethod {
             Self::Stls => stls::select(scores, library),
         };
         let mut names: Vec<String> = Vec::new();
-        for term in &selected {
-            let id = library[term.entry].effect.id;
+        for id in selected.iter().map(|term| library[term.entry].effect.id) {
             if !names.iter().any(|name| name == id) {
                 names.push(id.to_owned());
             }
@@ -122,6 +121,14 @@ pub(crate) struct LibraryEntry {
     pub(crate) effect: &'static Effect,
     pub(crate) has_shape: bool,
     pub(crate) signature: Signature,
+}
+
+impl LibraryEntry {
+    /// Its sizes, given its number.
+    fn terms(&self, entry: usize) -> impl Iterator<Item = Term> {
+        let columns = self.signature.columns.iter();
+        columns.map(move |&column| Term { entry, column })
+    }
 }
 
 /// All effects that have a signature; those with an onset or a time constant once for each point of a

@@ -172,6 +172,8 @@ impl CalibrationSummary {
         let banded = |of: fn(&CalibrationTrial) -> [f64; 3]| {
             BandedMean::of(&trials.iter().map(|trial| of(trial)).collect::<Vec<_>>())
         };
+        let named = Coefficients::NONE.named().into_iter().enumerate();
+        let of = |(index, (name, _, unit))| coefficient(&trials, index, name, unit);
         Self {
             runs: trials.len(),
             failures: outcome.failures().collect(),
@@ -182,12 +184,7 @@ impl CalibrationSummary {
             nees: banded(|trial| [trial.nees, 9.0, 1.0]),
             nis: banded(|trial| [trial.nis_sum, trial.values as f64, trial.rows as f64]),
             consistent: MeasuredValue::share(trials.iter().map(|trial| trial.consistent)),
-            coefficients: Coefficients::NONE
-                .named()
-                .iter()
-                .enumerate()
-                .map(|(index, (name, _, unit))| coefficient(&trials, index, name, unit))
-                .collect(),
+            coefficients: named.map(of).collect(),
         }
     }
 }
@@ -204,10 +201,9 @@ fn coefficient(
     let sigmas: Vec<f64> = determined.iter().map(|trial| trial.sigma[index]).collect();
     let over = |(error, sigma): (&f64, &f64)| error / sigma;
     let in_sigmas: Vec<f64> = errors.iter().zip(&sigmas).map(over).collect();
-    let bounds = determined
-        .iter()
-        .map(|trial| Some(trial.bound_sigma?[index]));
-    let bounds = bounds.collect::<Option<Vec<f64>>>().unwrap_or_default();
+    let bound = |trial: &&CalibrationTrial| Some(trial.bound_sigma?[index]);
+    let bounds: Option<Vec<f64>> = determined.iter().map(bound).collect();
+    let bounds = bounds.unwrap_or_default();
     let in_bounds: Vec<f64> = errors.iter().zip(&bounds).map(over).collect();
     // Without values these are NaN, which JSON does not have.
     let finite = |value: f64| value.is_finite().then_some(value);

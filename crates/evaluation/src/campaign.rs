@@ -116,12 +116,11 @@ impl Campaign {
         T: Serialize + DeserializeOwned + Send,
         E: Into<Box<dyn Error + Send + Sync>>,
     {
-        let pool = ThreadPoolBuilder::new()
-            .num_threads(self.threads.map_or(0, NonZeroUsize::get))
-            .build()
-            .map_err(|error| EvaluationError::Threads {
-                reason: error.to_string(),
-            })?;
+        let threads = self.threads.map_or(0, NonZeroUsize::get);
+        let pool = ThreadPoolBuilder::new().num_threads(threads).build();
+        let pool = pool.map_err(|error| EvaluationError::Threads {
+            reason: error.to_string(),
+        })?;
         let (store, mut results) = match &self.results {
             Some(path) => {
                 let (store, known) = Store::open(path, &self.fingerprint)?;
@@ -130,24 +129,17 @@ impl Campaign {
             None => (None, BTreeMap::new()),
         };
         results.retain(|seed, _| self.seeds.contains(seed));
-        let missing: Vec<u64> = self
-            .seeds
-            .clone()
-            .filter(|seed| !results.contains_key(seed))
-            .collect();
+        let mut missing: Vec<u64> = self.seeds.clone().collect();
+        missing.retain(|seed| !results.contains_key(seed));
         let resumed = results.len() as u64;
-        let failed = results.values().filter(|result| result.is_err()).count() as u64;
-        let collector = Mutex::new(Collector::new(
-            store,
-            progress,
-            Progress {
-                done: resumed,
-                total: resumed + missing.len() as u64,
-                resumed,
-                failed,
-                left: None,
-            },
-        ));
+        let state = Progress {
+            done: resumed,
+            total: resumed + missing.len() as u64,
+            resumed,
+            failed: results.values().filter(|result| result.is_err()).count() as u64,
+            left: None,
+        };
+        let collector = Mutex::new(Collector::new(store, progress, state));
         let one = |seed: u64| {
             let finished = job(seed).map_err(|error| one_line(&*error.into()));
             let (line, finished) = encode(seed, &finished)?;
@@ -159,14 +151,9 @@ impl Campaign {
             Ok((seed, finished))
         };
         // One seed a task: run times of seeds may differ by any factor.
-        let fresh: Vec<(u64, Finished<T>)> = pool.install(|| {
-            missing
-                .into_par_iter()
-                .with_max_len(1)
-                .map(one)
-                .collect::<Result<_, EvaluationError>>()
-        })?;
-        results.extend(fresh);
+        let tasks = missing.into_par_iter().with_max_len(1).map(one);
+        let fresh: Result<Vec<_>, EvaluationError> = pool.install(|| tasks.collect());
+        results.extend(fresh?);
         if let Ok(collector) = collector.into_inner()
             && let Some(store) = collector.store
         {
@@ -237,11 +224,9 @@ impl<T> Outcome<T> {
 
     /// Seeds whose job failed, with the message.
     pub fn failures(&self) -> impl Iterator<Item = Failure> {
-        self.results.iter().filter_map(|(seed, result)| {
-            Some(Failure {
-                seed: *seed,
-                message: result.as_ref().err()?.clone(),
-            })
+        self.results.iter().filter_map(|(&seed, result)| {
+            let message = result.as_ref().err()?.clone();
+            Some(Failure { seed, message })
         })
     }
 

@@ -75,12 +75,8 @@ pub fn measures(cell: PopulationCell, records: &[&RecordScore]) -> Vec<Measure> 
     if cell != PopulationCell::Clean && cell != PopulationCell::Cubic {
         let findings = records.iter().flat_map(|record| &record.findings);
         let alone = findings.filter(|finding| finding.lacks_equivalents);
-        let count = records.len() as u64;
-        all.push(none(
-            "single names for exact equivalents",
-            alone.count(),
-            count,
-        ));
+        let figure = "single names for exact equivalents";
+        all.push(none(figure, alone.count(), records.len() as u64));
     }
     all
 }
@@ -133,10 +129,8 @@ fn average_detected(records: &[&RecordScore]) -> Measure {
 /// Weak effects: how often they are found, and how often a set holds them beside an oracle's.
 fn weak(records: &[&RecordScore], least: f64) -> Vec<Measure> {
     let in_set = |record: &RecordScore| record.hidden.iter().all(|hidden| hidden.in_set);
-    let both = records
-        .iter()
-        .filter_map(|record| Some([in_set(record), record.oracle_in_set?]));
-    let both: Vec<[bool; 2]> = both.collect();
+    let pair = |record: &&RecordScore| Some([in_set(record), record.oracle_in_set?]);
+    let both: Vec<[bool; 2]> = records.iter().filter_map(pair).collect();
     let of = |which: usize| Statistic::share(&both, |pair| Some(pair[which]));
     let number = |pair: &[bool; 2]| pair.map(|held| f64::from(u8::from(held)));
     let detected = Statistic::share(records, |record| Some(record.detected()));
@@ -208,11 +202,9 @@ fn single(records: &[&RecordScore], first: Option<f64>) -> Vec<Measure> {
     };
     let first_at =
         |figure, cosine: f64| Measure::share(figure, records, move |record| right(record, cosine));
-    let sizes: Vec<[f64; 2]> = records
-        .iter()
-        .filter(|record| record.detected())
-        .filter_map(|record| Some([record.set_size() as f64, record.oracle_set_size? as f64]))
-        .collect();
+    let detected = records.iter().filter(|record| record.detected());
+    let pair = |of: &&RecordScore| Some([of.set_size() as f64, of.oracle_set_size? as f64]);
+    let sizes: Vec<[f64; 2]> = detected.filter_map(pair).collect();
     let own = Statistic::Mean(sizes.iter().map(|pair| pair[0]).collect());
     let class = match first {
         Some(least) => {
@@ -254,26 +246,18 @@ fn smallest(records: &[&RecordScore]) -> Vec<f64> {
         .filter_map(|record| record.hidden.first()?.deficit)
         .collect();
     let constant = quantile(&deficits, 0.95);
-    detected()
-        .map(|record| {
-            1 + record
-                .nearest
-                .iter()
-                .filter(|near| near.1 <= constant)
-                .count()
-        })
-        .map(|size| size as f64)
-        .collect()
+    let size = |record: &&RecordScore| {
+        let near = record.nearest.iter().filter(|near| near.1 <= constant);
+        (1 + near.count()) as f64
+    };
+    detected().map(size).collect()
 }
 
 fn covered(records: &[&RecordScore]) -> Measure {
     let hidden = records.iter().flat_map(|record| &record.hidden);
     let covered = Proportion::of(hidden.filter_map(|hidden| hidden.covered));
-    Measure::new(
-        "95 % interval of the size holds it, given the right name",
-        Statistic::Share(covered),
-    )
-    .at_least(0.93, OF_INTERVALS)
+    let figure = "95 % interval of the size holds it, given the right name";
+    Measure::new(figure, Statistic::Share(covered)).at_least(0.93, OF_INTERVALS)
 }
 
 fn pair(records: &[&RecordScore]) -> Vec<Measure> {
@@ -310,9 +294,8 @@ fn out_of_catalogue(records: &[&RecordScore]) -> Vec<Measure> {
     };
     let named = |record: &RecordScore| record.detected() && !record.tells_of_another();
     let of_reached = |figure, of: &dyn Fn(&RecordScore) -> bool| {
-        Measure::share(figure, records, |record| {
-            reached(record).then(|| of(record))
-        })
+        let of = |record: &RecordScore| reached(record).then(|| of(record));
+        Measure::share(figure, records, of)
     };
     let of_all = |figure, of: &dyn Fn(&RecordScore) -> bool| {
         Measure::share(figure, records, |record| Some(of(record)))
@@ -340,22 +323,18 @@ fn out_of_catalogue(records: &[&RecordScore]) -> Vec<Measure> {
 
 fn step(records: &[&RecordScore]) -> Vec<Measure> {
     let near = |record: &RecordScore| Some(record.hidden.first()?.onset_error? <= NEAR);
+    let of_all = |record: &RecordScore| Some(near(record) == Some(true));
+    let share =
+        |figure, of: &dyn Fn(&RecordScore) -> Option<bool>| Measure::share(figure, records, of);
+    let reason = "at eight sigmas the onset is uncertain by a few percent";
     vec![
-        Measure::share(
+        share(
             "onset within 5 % of the record, given the right name",
-            records,
-            near,
+            &near,
         )
-        .at_least(
-            0.90,
-            "at eight sigmas the onset is uncertain by a few percent",
-        ),
-        Measure::share(
-            "onset within 5 % of the record, of all",
-            records,
-            |record| Some(near(record) == Some(true)),
-        ),
-        Measure::share("detected", records, |record| Some(record.detected())),
+        .at_least(0.90, reason),
+        share("onset within 5 % of the record, of all", &of_all),
+        share("detected", &|record| Some(record.detected())),
     ]
 }
 

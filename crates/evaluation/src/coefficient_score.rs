@@ -19,15 +19,11 @@ impl CoefficientScore {
         truth: [f64; 9],
         estimates: impl IntoIterator<Item = (f64, f64)>,
     ) -> Option<Self> {
-        Self::of(
-            truth
-                .into_iter()
-                .zip(estimates)
-                .map(|(truth, (estimate, sigma))| {
-                    let error = (estimate - truth).abs() / sigma;
-                    (error, error <= NORMAL_97_5)
-                }),
-        )
+        let both = truth.into_iter().zip(estimates);
+        Self::of(both.map(|(truth, (estimate, sigma))| {
+            let error = (estimate - truth).abs() / sigma;
+            (error, error <= NORMAL_97_5)
+        }))
     }
 
     /// Of the coefficients that a diagnosis gives: over the members of its confidence sets, those of

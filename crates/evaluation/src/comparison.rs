@@ -37,19 +37,15 @@ impl ComparisonRow {
     /// Fraction of the records with a detection.
     #[must_use]
     pub fn detected(&self) -> Proportion {
-        Proportion {
-            hits: self.detected,
-            trials: self.runs,
-        }
+        let (hits, trials) = (self.detected, self.runs);
+        Proportion { hits, trials }
     }
 
     /// A number of detections as a fraction of all detections.
     #[must_use]
     pub fn of_detected(&self, hits: u64) -> Proportion {
-        Proportion {
-            hits,
-            trials: self.detected,
-        }
+        let trials = self.detected;
+        Proportion { hits, trials }
     }
 }
 
@@ -106,10 +102,8 @@ impl Answer {
 pub fn comparison(records: &[&RecordScore]) -> Vec<ComparisonRow> {
     let rows = core::iter::once(None).chain(BaselineMethod::ALL.map(Some));
     let row = |method: Option<BaselineMethod>| {
-        let answers = records
-            .iter()
-            .filter_map(|record| Some((record.hidden.len(), Answer::of(method, record)?)));
-        let answers: Vec<(usize, Answer)> = answers.collect();
+        let of = |record: &&RecordScore| Some((record.hidden.len(), Answer::of(method, record)?));
+        let answers: Vec<(usize, Answer)> = records.iter().filter_map(of).collect();
         (method.is_none() || !answers.is_empty()).then(|| row(method, &answers))
     };
     rows.filter_map(row).collect()
@@ -117,10 +111,8 @@ pub fn comparison(records: &[&RecordScore]) -> Vec<ComparisonRow> {
 
 /// The row of a method, from the number of injected effects and the answer of each record.
 fn row(method: Option<BaselineMethod>, answers: &[(usize, Answer)]) -> ComparisonRow {
-    let detected: Vec<&(usize, Answer)> = answers
-        .iter()
-        .filter(|(_, answer)| answer.detected)
-        .collect();
+    let detected = answers.iter().filter(|(_, answer)| answer.detected);
+    let detected: Vec<&(usize, Answer)> = detected.collect();
     let names = method.is_none_or(BaselineMethod::identifies_effects);
     let hides = answers.iter().any(|(hidden, _)| *hidden > 0);
     let count = |of: &dyn Fn(&(usize, Answer)) -> bool| {
@@ -160,10 +152,8 @@ impl FamilyRow {
     /// Fraction of the records with a finding.
     #[must_use]
     pub fn detected(&self) -> Proportion {
-        Proportion {
-            hits: self.detected,
-            trials: self.runs,
-        }
+        let (hits, trials) = (self.detected, self.runs);
+        Proportion { hits, trials }
     }
 }
 
@@ -173,37 +163,30 @@ pub fn families(records: &[&RecordScore]) -> Vec<FamilyRow> {
     let mut by_family: std::collections::BTreeMap<String, Vec<&RecordScore>> = Default::default();
     for record in records {
         if let Some(hidden) = record.hidden.first() {
-            by_family
-                .entry(effect_family(&hidden.effect).to_owned())
-                .or_default()
-                .push(record);
+            let family = effect_family(&hidden.effect).to_owned();
+            by_family.entry(family).or_default().push(record);
         }
     }
-    by_family
-        .into_iter()
-        .map(|(family, records)| {
-            let detected: Vec<&&RecordScore> =
-                records.iter().filter(|record| record.detected()).collect();
-            let count = |of: &dyn Fn(&RecordScore) -> bool| {
-                detected.iter().filter(|record| of(record)).count() as u64
-            };
-            let sizes: Vec<f64> = detected
-                .iter()
-                .map(|record| record.set_size() as f64)
-                .collect();
-            FamilyRow {
-                family,
-                runs: records.len() as u64,
-                detected: detected.len() as u64,
-                in_set: count(&|record| record.hidden.iter().all(|hidden| hidden.in_set)),
-                class_first: count(&|record| {
-                    let mut hidden = record.hidden.iter();
-                    hidden.any(|hidden| hidden.first_cosine >= SAME_CLASS_COSINE)
-                }),
-                mean_set_size: (!sizes.is_empty()).then(|| mean(&sizes)),
-            }
-        })
-        .collect()
+    let row = |(family, records): (String, Vec<&RecordScore>)| {
+        let detected = records.iter().filter(|record| record.detected());
+        let detected: Vec<&RecordScore> = detected.copied().collect();
+        let count = |of: fn(&RecordScore) -> bool| {
+            detected.iter().filter(|record| of(record)).count() as u64
+        };
+        let sizes = || detected.iter().map(|record| record.set_size() as f64);
+        FamilyRow {
+            family,
+            runs: records.len() as u64,
+            detected: detected.len() as u64,
+            in_set: count(|record| record.hidden.iter().all(|hidden| hidden.in_set)),
+            class_first: count(|record| {
+                let mut hidden = record.hidden.iter();
+                hidden.any(|hidden| hidden.first_cosine >= SAME_CLASS_COSINE)
+            }),
+            mean_set_size: (!detected.is_empty()).then(|| mean(sizes())),
+        }
+    };
+    by_family.into_iter().map(row).collect()
 }
 
 #[cfg(test)]

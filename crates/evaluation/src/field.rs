@@ -81,31 +81,21 @@ impl FieldPopulation<'static> {
     /// [`EvaluationError::RightAnswers`].
     pub fn wrong_keys() -> Result<Vec<Self>, EvaluationError> {
         let table = Table::read()?;
-        let of = |(key, first): (WrongKey, u64)| {
-            let right = table.right(&key.right)?;
-            let name = key.name();
-            Ok(Self::new(
-                &name,
-                first,
-                RECORDS,
-                right,
-                move |right, seed| {
-                    let both = key.record(seed)?;
-                    let strength = keys::strength(&both)?;
-                    let [_, (record, bench)] = both;
-                    let told = match bench {
-                        Ok(bench) => told(&[(record, bench)]),
-                        Err(_) => Told::set_up(right::BENCH),
-                    };
-                    let is_faint = strength.is_some_and(|strength| strength < VISIBLE);
-                    let (mut outcome, answer) = outcome(right, None, is_faint, told);
-                    outcome.strength = strength;
-                    Ok((outcome, answer))
-                },
-            ))
-        };
-        let keys = WrongKey::all(&table).into_iter().zip(seeds(KEYS));
-        keys.map(of).collect()
+        let keys = WrongKey::all(&table).into_iter();
+        let keys = keys.map(|key| (key.name(), key.right.clone(), key));
+        Self::each(&table, KEYS, keys, |key, right, seed| {
+            let both = key.record(seed)?;
+            let strength = keys::strength(&both)?;
+            let [_, (record, bench)] = both;
+            let told = match bench {
+                Ok(bench) => told(&[(record, bench)]),
+                Err(_) => Told::set_up(right::BENCH),
+            };
+            let is_faint = strength.is_some_and(|strength| strength < VISIBLE);
+            let (mut outcome, answer) = outcome(right, None, is_faint, told);
+            outcome.strength = strength;
+            Ok((outcome, answer))
+        })
     }
 
     /// Kinds of records, from irregular rows to records of two platforms.
@@ -113,37 +103,22 @@ impl FieldPopulation<'static> {
     /// # Errors
     /// [`EvaluationError::RightAnswers`].
     pub fn kinds() -> Result<Vec<Self>, EvaluationError> {
-        let table = Table::read()?;
-        let of = |(kind, first): (&'static FieldKind, u64)| {
-            let right = table.right(kind.right)?;
-            Ok(Self::new(
-                kind.name,
-                first,
-                RECORDS,
-                right,
-                move |right, seed| {
-                    let made = (kind.make)(seed)?;
-                    Ok(outcome(right, made.axis, false, told(&made.records)))
-                },
-            ))
-        };
-        FieldKind::ALL.iter().zip(seeds(KINDS)).map(of).collect()
+        let kinds = FieldKind::ALL.iter();
+        let kinds = kinds.map(|kind| (kind.name, kind.right, kind));
+        Self::each(&Table::read()?, KINDS, kinds, |kind, right, seed| {
+            let made = (kind.make)(seed)?;
+            Ok(outcome(right, made.axis, false, told(&made.records)))
+        })
     }
 
     /// Records of few rows, with gaps and missing values, as declared or with a wrong number.
     #[must_use]
     pub fn short() -> Self {
-        let name = "2 to 400 rows";
-        Self::new(
-            name,
-            SHORT,
-            SHORT_RECORDS,
-            Right::nothing(),
-            |right, seed| {
-                let made = records::short(seed)?;
-                Ok(outcome(right, None, false, told(&made.records)))
-            },
-        )
+        let seeds = (SHORT, SHORT_RECORDS);
+        Self::new("2 to 400 rows", seeds, Right::nothing(), |right, seed| {
+            let made = records::short(seed)?;
+            Ok(outcome(right, None, false, told(&made.records)))
+        })
     }
 }
 
@@ -153,28 +128,34 @@ impl<'a> FieldPopulation<'a> {
     /// # Errors
     /// [`EvaluationError::RightAnswers`].
     pub fn plants(servo: &'a LoadedPlant) -> Result<Vec<Self>, EvaluationError> {
-        let table = Table::read()?;
-        let of = |(kind, first): (&'static PlantKind, u64)| {
-            let right = table.right(kind.right)?;
-            Ok(Self::new(
-                kind.name,
-                first,
-                RECORDS,
-                right,
-                move |right, seed| {
-                    let told = Told::of_plant(kind.diagnosed(servo, seed));
-                    Ok(outcome(right, None, false, told))
-                },
-            ))
-        };
-        PlantKind::ALL.iter().zip(seeds(PLANTS)).map(of).collect()
+        let kinds = PlantKind::ALL.iter();
+        let kinds = kinds.map(|kind| (kind.name, kind.right, kind));
+        Self::each(&Table::read()?, PLANTS, kinds, |kind, right, seed| {
+            let told = Told::of_plant(kind.diagnosed(servo, seed));
+            Ok(outcome(right, None, false, told))
+        })
     }
 
-    /// A population whose records have one right answer, which the job gets.
+    /// A population of each kind with its name and that of its right answer; seeds begin at the first.
+    fn each<T: AsRef<str>, K: Send + Sync + 'a>(
+        table: &Table,
+        first_seed: u64,
+        kinds: impl Iterator<Item = (T, T, K)>,
+        job: impl Fn(&K, &Right, u64) -> Result<Judged, EvaluationError> + Copy + Send + Sync + 'a,
+    ) -> Result<Vec<Self>, EvaluationError> {
+        let of = |((name, right, kind), place): ((T, T, K), u64)| {
+            let seeds = (first_seed + APART * place, RECORDS);
+            let right = table.right(right.as_ref())?;
+            let job = move |right: &Right, seed| job(&kind, right, seed);
+            Ok(Self::new(name.as_ref(), seeds, right, job))
+        };
+        kinds.zip(0..).map(of).collect()
+    }
+
+    /// A population of a first seed and a number of records that have one right answer, which the job gets.
     fn new(
         name: &str,
-        first_seed: u64,
-        records: u64,
+        (first_seed, records): (u64, u64),
         right: Right,
         job: impl Fn(&Right, u64) -> Result<Judged, EvaluationError> + Send + Sync + 'a,
     ) -> Self {
@@ -186,11 +167,6 @@ impl<'a> FieldPopulation<'a> {
             job: Box::new(move |seed| job(&right, seed)),
         }
     }
-}
-
-/// First seeds of populations.
-fn seeds(first: u64) -> impl Iterator<Item = u64> {
-    (0..).map(move |place| first + APART * place)
 }
 
 fn outcome(right: &Right, axis: Option<usize>, faint: bool, told: Told) -> Judged {

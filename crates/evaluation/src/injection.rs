@@ -45,14 +45,9 @@ impl InjectedEffect {
         };
         let sizes = self.effect.sizes().zip(self.sizes.iter().copied());
         let shape = self.effect.shape().zip(self.shape);
-        let parameters: Vec<(String, f64)> = sizes
-            .chain(shape)
-            .map(|(parameter, value)| (name(parameter), value))
-            .collect();
-        let parameters: Vec<(&str, f64)> = parameters
-            .iter()
-            .map(|(name, value)| (name.as_str(), *value))
-            .collect();
+        let all = sizes.chain(shape);
+        let all: Vec<(String, f64)> = all.map(|(of, value)| (name(of), value)).collect();
+        let parameters: Vec<(&str, f64)> = all.iter().map(|(name, of)| (&**name, *of)).collect();
         Hidden::new(self.effect.id, &parameters)
     }
 
@@ -194,11 +189,12 @@ pub(crate) fn first_of<T>(
     strength: f64,
     mut draw: impl FnMut(usize) -> Result<Option<T>, EvaluationError>,
 ) -> Result<T, EvaluationError> {
-    let tried = draws;
+    let none = EvaluationError::NotInjectable {
+        tried: draws,
+        strength,
+    };
     let mut found = (0..draws).filter_map(|number| draw(number).transpose());
-    found
-        .next()
-        .unwrap_or(Err(EvaluationError::NotInjectable { tried, strength }))
+    found.next().unwrap_or(Err(none))
 }
 
 /// As [`inject`], for a record without the effects that is simulated and fitted already.
@@ -222,21 +218,17 @@ pub fn inject_into(
         return Ok(None);
     };
     let scores = ProjectedScores::new(fitted, &columns.further)?;
-    if !signatures
-        .iter()
-        .all(|signature| scores.observes(signature))
-    {
+    if !signatures.iter().all(|one| scores.observes(one)) {
         return Ok(None);
     }
-    let directions: Vec<Vec<f64>> = signatures
-        .iter()
-        .map(|signature| {
-            let information = scores.product(signature, signature);
-            (0..signature.columns.len())
-                .map(|i| random.normal() / information[(i, i)].sqrt())
-                .collect()
-        })
-        .collect();
+    let mut direction = |signature: &Signature| -> Vec<f64> {
+        let sigmas = scores
+            .product(signature, signature)
+            .diagonal()
+            .map(f64::sqrt);
+        sigmas.iter().map(|sigma| random.normal() / sigma).collect()
+    };
+    let directions: Vec<Vec<f64>> = signatures.iter().map(&mut direction).collect();
     for (i, one) in signatures.iter().enumerate() {
         for (direction, other) in directions.iter().zip(&signatures).skip(i + 1) {
             if scores.cosine(other, direction, one) > largest_cosine {
@@ -246,11 +238,9 @@ pub fn inject_into(
     }
     let mut injected = Vec::with_capacity(effects.len());
     for (i, (effect, shape)) in effects.iter().enumerate() {
-        let others: Vec<&Signature> = (0..signatures.len())
-            .filter(|other| *other != i)
-            .map(|other| &signatures[other])
-            .collect();
-        let Some(information) = own_information(&scores, &signatures[i], &others) else {
+        let others = (0..signatures.len()).filter(|other| *other != i);
+        let others = others.flat_map(|other| signatures[other].columns.iter().copied());
+        let Some(information) = own_information(&scores, &signatures[i], others.collect()) else {
             return Ok(None);
         };
         let direction = DVector::from_column_slice(&directions[i]);
@@ -267,21 +257,16 @@ pub fn inject_into(
     Ok(Some(injected))
 }
 
-/// Information on the sizes of an effect with other effects projected out; `None` if these are not
+/// Information on the sizes of an effect with the columns of others projected out; `None` if these are not
 /// distinguishable from each other.
 fn own_information(
     scores: &ProjectedScores,
     own: &Signature,
-    others: &[&Signature],
+    others: Vec<usize>,
 ) -> Option<DMatrix<f64>> {
     let mut information = scores.product(own, own);
-    let joined = Signature {
-        columns: others
-            .iter()
-            .flat_map(|other| other.columns.iter().copied())
-            .collect(),
-        scale: 1.0,
-    };
+    let (columns, scale) = (others, 1.0);
+    let joined = Signature { columns, scale };
     if !joined.columns.is_empty() {
         let cross = scores.product(&joined, own);
         let inner = Cholesky::new(scores.product(&joined, &joined))?;

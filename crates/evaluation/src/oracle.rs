@@ -32,12 +32,9 @@ pub(crate) fn sets_in_noise(
     noise: &NoiseModel,
     among: impl Fn(&Effect) -> bool,
 ) -> Result<Vec<Vec<&'static str>>, EvaluationError> {
+    let shares = found.result.false_alarm_shares.as_ref();
     let options = SearchOptions {
-        false_alarm_probability: found
-            .result
-            .false_alarm_shares
-            .as_ref()
-            .map_or(0.0, |all| all.search),
+        false_alarm_probability: shares.map_or(0.0, |all| all.search),
         ..SearchOptions::default()
     };
     let mut selection = selection(&simulation.record, &simulation.bench, &[]);

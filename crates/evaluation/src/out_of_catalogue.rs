@@ -162,10 +162,10 @@ fn scale(
     let without = whitened_residuals(clean)?;
     for _ in 0..=CORRECTIONS {
         let Ok(simulation) = effect.simulate(scenario) else {
-            break;
+            return Ok(None);
         };
         let Ok(with) = whitened_residuals(&simulation) else {
-            break;
+            return Ok(None);
         };
         let factor = strength / distance(&without, &with);
         if (1.0 / REACHED..REACHED).contains(&factor) {
@@ -173,7 +173,7 @@ fn scale(
         }
         effect.size *= factor;
         if !(1e-4..1e4).contains(&factor) || effect.size > effect.largest_size {
-            break;
+            return Ok(None);
         }
     }
     Ok(None)
@@ -187,15 +187,13 @@ fn whitened_residuals(simulation: &Simulation) -> Result<Vec<[f64; 3]>, Evaluati
 /// Length of the difference between the whitened residuals of one model fitted to two records with
 /// the same noise.
 fn distance(without: &[[f64; 3]], with: &[[f64; 3]]) -> f64 {
-    let square: f64 = without
-        .iter()
-        .flatten()
-        .zip(with.iter().flatten())
-        .map(|(without, with)| with - without)
-        .filter(|difference| !difference.is_nan())
+    let both = without.iter().flatten().zip(with.iter().flatten());
+    let differences = both.map(|(without, with)| with - without);
+    let there = differences.filter(|difference| !difference.is_nan());
+    there
         .map(|difference| difference * difference)
-        .sum();
-    square.sqrt()
+        .sum::<f64>()
+        .sqrt()
 }
 
 /// The extension without unmodelled terms: the spectral lines and curves that the search added have no
@@ -228,13 +226,10 @@ mod tests {
             let effect = UnlistedEffect::draw(kind, &scenario, random).unwrap();
             if let Some(record) = UnlistedRecord::scaled(&scenario, effect, 10.0).unwrap() {
                 scaled += 1;
-                let [without, with] =
-                    [&record.clean, &record.with].map(|one| whitened_residuals(one).unwrap());
-                let strength = distance(&without, &with);
-                assert!(
-                    (10.0 / REACHED..10.0 * REACHED).contains(&strength),
-                    "{strength}"
-                );
+                let of = |one| whitened_residuals(one).unwrap();
+                let strength = distance(&of(&record.clean), &of(&record.with));
+                let reached = 10.0 / REACHED..10.0 * REACHED;
+                assert!(reached.contains(&strength), "{strength}");
                 // Scaling does not change the sign.
                 assert!(record.effect.size > 0.0);
             }
@@ -249,9 +244,8 @@ mod tests {
         // Strength without a walk, and beside one of each gyro that does in a day what the effect does.
         let strengths = |kind: UnlistedKind| {
             let random = &mut Draw::new(5, 0);
-            let record = UnlistedRecord::draw(&scenario, kind, 10.0, random)
-                .unwrap()
-                .unwrap();
+            let record = UnlistedRecord::draw(&scenario, kind, 10.0, random).unwrap();
+            let record = record.unwrap();
             let mut found = diagnosed(&record.clean).unwrap();
             assert!(found.extended.is_none());
             let without = record.strength_beside(&found).unwrap();

@@ -54,30 +54,28 @@ impl PopulationCell {
     /// Name on the command line and in files.
     #[must_use]
     pub fn name(self) -> String {
-        let [name, _] = self.words();
-        name
+        self.words().0
     }
 
     /// Description of its records, as a heading.
     #[must_use]
     pub fn title(self) -> String {
-        let [_, title] = self.words();
-        title
+        self.words().1
     }
 
     /// Name and title.
-    fn words(self) -> [String; 2] {
-        let words = match self {
-            Self::Clean => ["clean", "clean records"],
-            Self::Single(d) => return [format!("d{d}"), format!("d = {d}")],
-            Self::LogUniform => ["d5-50", "d = 5 to 50"],
-            Self::Pair => ["pair", "two effects, d = 8 each"],
-            Self::OutOfCatalogue => ["beyond", "beyond the catalogue, d = 10"],
-            Self::Step => ["step", "a step, d = 8"],
-            Self::Cubic => ["cubic", "a cubic term, d = 3"],
-            Self::Azimuth => ["azimuth", "azimuth wrong by 0.1 deg"],
+    fn words(self) -> (String, String) {
+        let (name, title) = match self {
+            Self::Clean => ("clean", "clean records"),
+            Self::Single(d) => return (format!("d{d}"), format!("d = {d}")),
+            Self::LogUniform => ("d5-50", "d = 5 to 50"),
+            Self::Pair => ("pair", "two effects, d = 8 each"),
+            Self::OutOfCatalogue => ("beyond", "beyond the catalogue, d = 10"),
+            Self::Step => ("step", "a step, d = 8"),
+            Self::Cubic => ("cubic", "a cubic term, d = 3"),
+            Self::Azimuth => ("azimuth", "azimuth wrong by 0.1 deg"),
         };
-        words.map(str::to_owned)
+        (name.to_owned(), title.to_owned())
     }
 
     /// The cell of a name.
@@ -131,10 +129,8 @@ impl PopulationCell {
             Self::Cubic => draws::one_of(draws::is_cubic, &scenario, 3.0, random)?,
             Self::Azimuth => draws::azimuth(&scenario, random)?,
         };
-        let hidden: Result<Vec<_>, _> = injected
-            .iter()
-            .map(|(injected, _)| injected.to_hidden())
-            .collect();
+        let hidden = injected.iter().map(|(injected, _)| injected.to_hidden());
+        let hidden: Result<Vec<_>, _> = hidden.collect();
         let simulation = simulate(&Scenario {
             hidden: hidden?,
             ..scenario.clone()
@@ -152,11 +148,8 @@ mod tests {
         for cell in PopulationCell::ALL {
             assert_eq!(PopulationCell::of_name(&cell.name()).ok(), Some(cell));
         }
-        let error = PopulationCell::of_name("d7")
-            .err()
-            .map(|error| error.to_string());
-        assert!(
-            error.is_some_and(|error| error.contains("found the cell `d7`, expected one of clean"))
-        );
+        let error = PopulationCell::of_name("d7").err();
+        let said = error.map(|error| error.to_string()).unwrap_or_default();
+        assert!(said.contains("found the cell `d7`, expected one of clean"));
     }
 }

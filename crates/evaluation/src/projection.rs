@@ -70,11 +70,8 @@ impl ProjectedScores {
                 reduced.gram[(rows[i], columns[j])]
             })
         };
-        let weight: Vec<f64> = fitted
-            .prior_sigma()
-            .iter()
-            .map(|sigma| 1.0 / (sigma * sigma))
-            .collect();
+        let of = |sigma: &f64| 1.0 / (sigma * sigma);
+        let weight: Vec<f64> = fitted.prior_sigma().iter().map(of).collect();
         let mut inner = gram(&fitted_columns, &fitted_columns);
         for (i, weight) in weight.iter().enumerate() {
             inner[(i, i)] += weight;
@@ -155,11 +152,8 @@ impl ProjectedScores {
     /// `true` if every column of an effect is observable given the fit.
     #[must_use]
     pub fn observes(&self, signature: &Signature) -> bool {
-        !signature.columns.is_empty()
-            && signature
-                .columns
-                .iter()
-                .all(|column| self.observable[*column])
+        let mut columns = signature.columns.iter();
+        !signature.columns.is_empty() && columns.all(|column| self.observable[*column])
     }
 
     /// Information block of the sizes of two effects, in the units of their tables.

@@ -52,30 +52,25 @@ pub(crate) fn score(
             .and_then(|effect| columns.signature(effect, record, shape_of(finding)));
         (finding.effect.as_str(), signature)
     });
-    let library = if methods.iter().any(|method| method.identifies_effects()) {
-        library(&testable_effects(scenario), record, &mut columns)
-    } else {
-        Vec::new()
+    let library = match methods.iter().any(|method| method.identifies_effects()) {
+        true => library(&testable_effects(scenario), record, &mut columns),
+        false => Vec::new(),
     };
     let misnamed = first.as_ref().is_some_and(|(name, _)| {
         let mut truths = truths.iter();
         truths.any(|truth| !same_or_equivalent(truth.injected.effect.id, name))
     });
     // Without another name and without a baseline method no cosine is asked for.
-    let scores = if !methods.is_empty() || misnamed {
-        Some(nominal_scores(simulation, &found, &columns)?)
-    } else {
-        None
+    let scores = (!methods.is_empty() || misnamed)
+        .then(|| nominal_scores(simulation, &found, &columns))
+        .transpose()?;
+    let hidden = |truth: &Truth<'_>| {
+        let first_cosine = first.as_ref().map_or(0.0, |(name, signature)| {
+            truth.cosine(name, signature.as_ref(), scores.as_ref())
+        });
+        injected_score(&found.result, truth, first_cosine, scenario.duration_s)
     };
-    let hidden = truths
-        .iter()
-        .map(|truth| {
-            let first_cosine = first.as_ref().map_or(0.0, |(name, signature)| {
-                truth.cosine(name, signature.as_ref(), scores.as_ref())
-            });
-            injected_score(&found.result, truth, first_cosine, scenario.duration_s)
-        })
-        .collect();
+    let hidden = truths.iter().map(hidden).collect();
     let coefficients = simulation.truth.coefficients.named();
     let coefficients = coefficients.map(|(_, value, _)| value);
     let methods = scores.as_ref().map_or_else(Vec::new, |scores| {
@@ -85,9 +80,8 @@ pub(crate) fn score(
         };
         methods.iter().map(of).collect()
     });
-    let weak = injected
-        .iter()
-        .find(|(_, strength)| WEAK.contains(strength));
+    let mut all = injected.iter();
+    let weak = all.find(|(_, strength)| WEAK.contains(strength));
     let oracle = weak.map(|(weak, _)| {
         let sets = sets_without_walks(&found, simulation)?;
         let is_it = |effect: &&str| same_or_equivalent(effect, weak.effect.id);
@@ -97,10 +91,7 @@ pub(crate) fn score(
         hidden,
         oracle_set_size: oracle_set_size(simulation, &found)?,
         oracle_in_set: oracle.transpose()?,
-        coefficients: found
-            .result
-            .coefficients
-            .as_ref()
+        coefficients: (found.result.coefficients.as_ref())
             .and_then(|found| CoefficientScore::diagnosed(coefficients, found)),
         methods,
         ..findings_score(&found.result)
@@ -139,10 +130,9 @@ fn nominal_scores(
     found: &Diagnosis<'_>,
     columns: &SignatureColumns,
 ) -> Result<ProjectedScores, EvaluationError> {
-    let nominal = if found.noise_model == NoiseModel::default() {
-        found.nominal.clone()
-    } else {
-        nominal_fit(simulation)?
+    let nominal = match found.noise_model == NoiseModel::default() {
+        true => found.nominal.clone(),
+        false => nominal_fit(simulation)?,
     };
     Ok(ProjectedScores::new(&nominal, &columns.further)?)
 }
@@ -201,11 +191,8 @@ fn nearest(ranking: &[RankedEffect]) -> Vec<(String, f64)> {
     };
     let mut nearest: Vec<(String, f64)> = Vec::with_capacity(NEAREST_KEPT);
     for ranked in &ranking[1..] {
-        let listed = same_or_equivalent(&ranked.effect, &best.effect)
-            || nearest
-                .iter()
-                .any(|(other, _)| same_or_equivalent(&ranked.effect, other));
-        if !listed {
+        let same = |other: &String| same_or_equivalent(&ranked.effect, other);
+        if !same(&best.effect) && !nearest.iter().any(|(other, _)| same(other)) {
             nearest.push((ranked.effect.clone(), best.statistic - ranked.statistic));
         }
         if nearest.len() == NEAREST_KEPT {
@@ -249,16 +236,13 @@ fn injected_score(
     let shape = injected.effect.shape();
     let shape = shape.filter(|shape| matches!(shape.role, Role::Onset(_)));
     let onset_s = parameters.zip(shape).and_then(|(parameters, shape)| {
-        let onset = parameters
-            .iter()
-            .find(|parameter| parameter.name == shape.name);
+        let mut parameters = parameters.iter();
+        let onset = parameters.find(|parameter| parameter.name == shape.name);
         onset.map(|onset| onset.estimate)
     });
     let best = found.ranking.first().map_or(0.0, |best| best.statistic);
-    let own = found
-        .ranking
-        .iter()
-        .find(|ranked| same_or_equivalent(&ranked.effect, id));
+    let mut ranking = found.ranking.iter();
+    let own = ranking.find(|ranked| same_or_equivalent(&ranked.effect, id));
     InjectedScore {
         effect: id.to_owned(),
         strength: truth.strength,
@@ -276,9 +260,8 @@ fn injected_score(
 fn covers(parameters: &[Parameter], sizes: &[f64]) -> bool {
     let sigmas = HALF_WIDTHS[sizes.len().clamp(1, HALF_WIDTHS.len()) - 1];
     parameters.iter().zip(sizes).all(|(found, size)| {
-        found
-            .sigma
-            .is_none_or(|sigma| (found.estimate - size).abs() <= sigmas * sigma)
+        let holds = |sigma| (found.estimate - size).abs() <= sigmas * sigma;
+        found.sigma.is_none_or(holds)
     })
 }
 

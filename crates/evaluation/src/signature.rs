@@ -38,22 +38,17 @@ impl SignatureColumns {
         let first_s = record.time_s.first().copied().unwrap_or(0.0);
         let last_step = record.len().saturating_sub(2);
         let rows_before = |onset_s: f64| {
-            record
-                .time_s
-                .partition_point(|time_s| time_s - first_s < onset_s)
+            let times_s = &record.time_s;
+            times_s.partition_point(|time_s| time_s - first_s < onset_s)
         };
-        let further = match (effect.kind, shape, effect.rate()) {
-            (EffectKind::InitialState, ..) => (0..3)
-                .map(|axis| Column::InitialState {
-                    row: 0,
-                    state: axis,
-                })
-                .collect(),
+        let of_states = |column: &dyn Fn(usize) -> Column| (0..3).map(column).collect();
+        let further: Vec<Column> = match (effect.kind, shape, effect.rate()) {
+            (EffectKind::InitialState, ..) => {
+                of_states(&|state| Column::InitialState { row: 0, state })
+            }
             (EffectKind::StateJump, Some(onset_s), _) => {
                 let row = rows_before(onset_s).saturating_sub(1).min(last_step);
-                (0..3)
-                    .map(|axis| Column::StateJump { row, state: axis })
-                    .collect()
+                of_states(&|state| Column::StateJump { row, state })
             }
             (EffectKind::Step, Some(onset_s), Some(gyro)) => vec![Column::Step {
                 parameter: BIASES[gyro],

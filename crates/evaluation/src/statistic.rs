@@ -146,9 +146,8 @@ impl Statistic {
             Self::Least(all) => Some(least(all)?.interval(CONFIDENCE)),
             Self::Average(all) => {
                 let sigma = sigma_of_average(all);
-                Some(
-                    [-NORMAL_97_5, NORMAL_97_5].map(|z| (self.value() + z * sigma).clamp(0.0, 1.0)),
-                )
+                let at = |z: f64| (self.value() + z * sigma).clamp(0.0, 1.0);
+                Some([-NORMAL_97_5, NORMAL_97_5].map(at))
             }
             _ => None,
         }
@@ -180,6 +179,7 @@ impl Statistic {
     /// Judgement against a target by a population as large as the target asks for (`full`), or by a smaller one.
     #[must_use]
     pub fn judged(&self, target: Target, full: bool) -> Judgement {
+        let normal = |sigma| judged(Range::normal(self.value(), sigma), target, full);
         match self {
             Self::Value(value, _) => {
                 let [least, most] = target.range();
@@ -196,12 +196,11 @@ impl Statistic {
             },
             Self::Least(all) => {
                 // In a full population, too, a part of the records may be too few to tell.
-                let of = |share: &Proportion| Range::exact(share);
                 let [least, _] = target.range();
-                let met = all.iter().all(|share| of(share).bounds[0] >= least);
+                let met = all.iter().all(|of| Range::exact(of).bounds[0] >= least);
                 let missed = |share: &Proportion| match full {
-                    true => of(share).bounds[1] < least,
-                    false => of(share).far[1] < least,
+                    true => Range::exact(share).bounds[1] < least,
+                    false => Range::exact(share).far[1] < least,
                 };
                 Judgement::of(met, all.iter().any(missed))
             }
@@ -212,17 +211,9 @@ impl Statistic {
                 ratio_judged(&squares(pairs), range, full)
             }
             Self::Share(share) if share.trials > 0 => judged(Range::exact(share), target, full),
-            Self::Average(all) => judged(
-                Range::normal(self.value(), sigma_of_average(all)),
-                target,
-                full,
-            ),
+            Self::Average(all) => normal(sigma_of_average(all)),
             // One record or none has no standard error, and shows nothing.
-            Self::Mean(values) if values.len() > 1 => judged(
-                Range::normal(self.value(), standard_error(values)),
-                target,
-                full,
-            ),
+            Self::Mean(values) if values.len() > 1 => normal(standard_error(values)),
             Self::Median(values) if values.len() > 1 => judged(of_median(values), target, full),
             Self::Share(_) | Self::Mean(_) | Self::Median(_) => Judgement::TooFew,
         }
@@ -234,17 +225,15 @@ fn ratio_judged(pairs: &[[f64; 2]], [least, most]: [f64; 2], full: bool) -> Judg
     if pairs.len() < 2 {
         return Judgement::TooFew;
     }
-    let side = |limit: f64, sign: f64| {
+    let side = |(limit, sign): (f64, f64)| {
         let excess = pairs.iter().map(|pair| sign * (pair[0] - limit * pair[1]));
         let excess: Vec<f64> = excess.collect();
         let range = Range::normal(mean(&excess), standard_error(&excess));
         judged(range, Target::AtMost(0.0), full)
     };
     let sides = [(least, -1.0), (most, 1.0)].into_iter();
-    let judgements: Vec<Judgement> = sides
-        .filter(|(limit, _)| limit.is_finite())
-        .map(|(limit, sign)| side(limit, sign))
-        .collect();
+    let sides = sides.filter(|(limit, _)| limit.is_finite());
+    let judgements: Vec<Judgement> = sides.map(side).collect();
     Judgement::of(
         judgements.iter().all(|one| *one == Judgement::Met),
         judgements.contains(&Judgement::Missed),
@@ -252,10 +241,8 @@ fn ratio_judged(pairs: &[[f64; 2]], [least, most]: [f64; 2], full: bool) -> Judg
 }
 
 fn squares(pairs: &[[f64; 2]]) -> Vec<[f64; 2]> {
-    pairs
-        .iter()
-        .map(|pair| pair.map(|value| value * value))
-        .collect()
+    let square = |pair: &[f64; 2]| pair.map(|value| value * value);
+    pairs.iter().map(square).collect()
 }
 
 /// A range against a target.

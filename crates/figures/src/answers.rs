@@ -27,19 +27,16 @@ impl Checked {
     pub(crate) fn of(answer: &Answer) -> Result<Self, Error> {
         let is_open = answer.verdict != Verdict::Setup
             && (!answer.search_complete || !answer.findings.is_empty() && answer.is_unexplained());
-        let mut checked = Self {
-            faults: Vec::new(),
-            is_open,
-            settled: Vec::new(),
+        let faults = match write_text(answer) {
+            Ok(text) => faults(answer, &text)?,
+            Err(error) => vec![error.to_string()],
         };
-        match write_text(answer) {
-            Ok(text) => checked.faults = faults(answer, &text)?,
-            Err(error) => checked.faults.push(error.to_string()),
-        }
-        if is_open {
-            checked.settled = settled(answer);
-        }
-        Ok(checked)
+        let settled = if is_open { settled(answer) } else { Vec::new() };
+        Ok(Self {
+            faults,
+            is_open,
+            settled,
+        })
     }
 }
 
@@ -60,27 +57,24 @@ fn faults(answer: &Answer, text: &str) -> Result<Vec<String>, Error> {
     std::fs::write(folder.path().join("answer.json"), text)?;
     let mut refused = |arguments: &[&str], may_say: &str| -> Result<(), Error> {
         let outcome = run(gyrocal(folder.path())?.args(arguments));
-        let said = outcome
-            .stderr
-            .split_whitespace()
-            .collect::<Vec<_>>()
-            .join(" ");
+        let said = outcome.stderr.split_whitespace();
+        let said = said.collect::<Vec<_>>().join(" ");
         if outcome.code != Some(0) && (may_say.is_empty() || !said.contains(may_say)) {
             faults.push(format!("{}: {said}", arguments.join(" ")));
         }
         Ok(())
     };
+    let is_plant = matches!(answer.subject, Subject::Plant(_));
+    let may_say = match is_plant {
+        true => "an answer on the plant",
+        false => "expected an effect of the extended model",
+    };
     refused(&["report", "answer.json", "--out", "page.html"], "")?;
-    if matches!(answer.subject, Subject::Plant(_)) {
-        let line = ["extend", "answer.json", "--out", "e.model.toml"];
-        refused(&line, "an answer on the plant")?;
-    } else {
-        let line = ["extend", "answer.json", "--out", "e.model.toml"];
-        refused(&line, "expected an effect of the extended model")?;
-        let name = RecordName::default();
-        if let Err(error) = FleetRecord::read(name, text, None) {
-            faults.push(format!("fleet: {error}"));
-        }
+    refused(&["extend", "answer.json", "--out", "e.model.toml"], may_say)?;
+    if let Err(error) = FleetRecord::read(RecordName::default(), text, None)
+        && !is_plant
+    {
+        faults.push(format!("fleet: {error}"));
     }
     Ok(faults)
 }

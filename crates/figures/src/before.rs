@@ -11,7 +11,7 @@ mod results;
 mod tests;
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use gyrocal_testkit::workspace;
 use rayon::prelude::*;
@@ -54,11 +54,9 @@ pub(crate) struct Case {
 pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
     let (small, write, names) = (context.is_small(), context.write, &context.named);
     let folder = folder();
-    let mut cases = table(&folder)?;
-    if let Some(name) = names
-        .iter()
-        .find(|name| cases.iter().all(|case| case.name != **name))
-    {
+    let mut cases = cases()?;
+    let is_unknown = |name: &&String| cases.iter().all(|case| case.name != **name);
+    if let Some(name) = names.iter().find(is_unknown) {
         return Err(format!("found no record `{name}`, expected one of cases.toml").into());
     }
     cases.retain(|case| (names.is_empty() || names.contains(&case.name)) && !(small && case.slow));
@@ -81,29 +79,18 @@ pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
         }
     }
     let whole = !small && names.is_empty();
-    let least = if whole { RECORDS } else { 1 } as f64;
-    let name =
+    let least = if whole { RECORDS } else { 1 };
+    let kinds = counted(cases.iter().map(|case| &case.kind));
+    let states = counted(cases.iter().map(|case| &case.state));
+    let all = format!("{}: {kinds}; {states}", cases.len());
+    let compared = "records whose results are compared with those of an earlier build";
+    let changed =
         "keys of them that differ and may not, by more than 1e-6 of their sigma or of themselves";
-    let differ = Figure::at_most(name, 0.0, f64::from(differ), "");
+    let differ = Figure::at_most(changed, 0.0, f64::from(differ), "");
     let mut figures = vec![
-        Figure {
-            measured: format!(
-                "{}: {}; {}",
-                cases.len(),
-                counted(cases.iter().map(|case| &case.kind)),
-                counted(cases.iter().map(|case| &case.state))
-            ),
-            ..Figure::within(
-                "records whose results are compared with those of an earlier build",
-                [least, f64::INFINITY],
-                cases.len() as f64,
-            )
-        },
-        Figure {
-            // Not judged where results are renewed.
-            holds: differ.holds.filter(|_| !write),
-            ..differ
-        },
+        Figure::told(compared, &format!(">= {least}"), all, cases.len() >= least),
+        // Not judged where results are renewed.
+        differ.judged(!write),
         Figure::note("values compared", values.to_string()),
         Figure::note("keys that differ as they may", may_differ.to_string()),
     ];
@@ -134,12 +121,7 @@ fn folder() -> PathBuf {
 
 /// All cases.
 pub(crate) fn cases() -> Result<Vec<Case>, Error> {
-    table(&folder())
-}
-
-/// The cases of a folder.
-fn table(folder: &Path) -> Result<Vec<Case>, Error> {
-    let path = folder.join("cases.toml");
+    let path = folder().join("cases.toml");
     let table = toml::from_str(&std::fs::read_to_string(&path)?);
     let mut table: BTreeMap<String, Vec<Case>> =
         table.map_err(|error| format!("{}: {error}", path.display()))?;

@@ -10,9 +10,7 @@ use gyrocal_statistics::NORMAL_97_5;
 use gyrocal_truth::{Coefficients, simulate};
 use serde::{Deserialize, Serialize};
 
-use crate::harness::{
-    CALIBRATION, COVERAGE, COVERAGE_REASON, Context, Error, Figure, Population, Row, of,
-};
+use crate::harness::{CALIBRATION, Context, Error, Figure, Population, Row, of};
 
 /// Seed of the population of scenarios; its numbers are the seeds of the records.
 const SEED: u64 = 20_150_904;
@@ -66,6 +64,10 @@ fn rows() -> Vec<Row<'static, Both>> {
         let CalibrationTrial { error, sigma, .. } = one.streaming;
         core::array::from_fn(|i| error[i].abs() <= 3.5 * sigma[i])
     };
+    let none = "none; truths nearer than their priors take nine of some ten thousand";
+    let one_pass = "one pass of a filter: a third more than a consistent estimator";
+    let beyond = "0.9995 of a normal distribution; ten times as many may be beyond";
+    let name = |what: &str| format!("random scenarios, streaming filter: {what}");
     let mut rows = vec![
         Row::mean("mean NEES of the nine coefficients", all).between([8.9, 9.1], nine),
         Row::mean("mean NEES of the determined coefficients", determined).between([8.9, 9.1], nine),
@@ -73,26 +75,9 @@ fn rows() -> Vec<Row<'static, Both>> {
             "NIS over the number of values, less one, in thousandths",
             nis,
         )
-        .between(
-            [-1.0, 1.0],
-            "none; truths nearer than their priors take nine of some ten thousand",
-        ),
-        Row::mean(
-            "random scenarios, streaming filter: mean NEES (9 expected)",
-            streaming,
-        )
-        .at_most(
-            12.0,
-            "one pass of a filter: a third more than a consistent estimator",
-        ),
-        Row::each(
-            "random scenarios, streaming filter: share of coefficients within 3.5 sigmas",
-            near,
-        )
-        .at_least(
-            0.995,
-            "0.9995 of a normal distribution; ten times as many may be beyond",
-        ),
+        .between([-1.0, 1.0], none),
+        Row::mean(name("mean NEES (9 expected)"), streaming).at_most(12.0, one_pass),
+        Row::each(name("share of coefficients within 3.5 sigmas"), near).at_least(0.995, beyond),
     ];
     for (index, name) in names() {
         let over_bound = move |one: &Both| {
@@ -103,17 +88,12 @@ fn rows() -> Vec<Row<'static, Both>> {
             let held = one.batch.error[index].abs() <= NORMAL_97_5 * one.batch.sigma[index];
             one.batch.determined[index].then_some(held)
         };
-        rows.push(
+        let holds = format!("{name}: share of 95 % intervals that hold the truth");
+        rows.extend([
             Row::rms_ratio(format!("{name}: RMSE / Cramér–Rao bound"), over_bound)
                 .between([0.93, 1.07], "as good as any estimator can be"),
-        );
-        rows.push(
-            Row::share(
-                format!("{name}: share of 95 % intervals that hold the truth"),
-                held,
-            )
-            .between(COVERAGE, COVERAGE_REASON),
-        );
+            Row::share(holds, held).of_coverage(),
+        ]);
     }
     rows
 }

@@ -3,8 +3,6 @@
 mod entries;
 mod signature;
 
-use std::path::PathBuf;
-
 use gyrocal::{EFFECTS, Effect};
 use gyrocal_report::write_svg;
 
@@ -14,8 +12,6 @@ use crate::values::Values;
 
 /// Template of the page.
 pub(crate) const TEMPLATE: &str = include_str!("catalogue/page.md");
-
-const TOPIC: &str = "diagnosis --part catalogue";
 
 /// All figures of the part; with leave to write page and pictures are renewed instead of compared.
 pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
@@ -27,28 +23,24 @@ pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
     values.put("tested", tested.count().to_string());
     values.put("families", families.len().to_string());
     values.put("entries", entries::of(&families));
-    let text = page::fill(TEMPLATE, &values)?;
-    let path = page::docs().join("catalogue.md");
-    let mut same = page::renewed(&path, &text, TOPIC, write)?;
+    let topic = "diagnosis --part catalogue";
+    let mut same = page::filled("catalogue.md", TEMPLATE, &values, topic, write)?;
     let mut drawn = 0;
     for effect in families {
         let Some(picture) = signature::picture(effect)? else {
             continue;
         };
         drawn += 1;
-        let path = picture_path(effect);
+        let pictures = page::docs().join("pictures/catalogue");
+        let path = pictures.join(format!("{}.svg", effect.family));
         if write {
             write_svg(&picture, &path)?;
-        } else {
-            same &= path.is_file();
         }
+        same &= path.is_file();
     }
     let note = Figure::note("signatures drawn", drawn.to_string());
-    let current = Figure::truth(
-        "docs/catalogue.md is the catalogue, with its pictures",
-        same,
-    );
-    Ok(vec![note, current])
+    let name = "docs/catalogue.md is the catalogue, with its pictures";
+    Ok(vec![note, Figure::truth(name, same)])
 }
 
 /// The first effect of each family, in the order of the catalogue.
@@ -60,10 +52,4 @@ fn families() -> Vec<&'static Effect> {
         }
     }
     first
-}
-
-fn picture_path(effect: &Effect) -> PathBuf {
-    page::docs()
-        .join("pictures/catalogue")
-        .join(format!("{}.svg", effect.family))
 }

@@ -21,8 +21,10 @@ const COLUMNS: [&str; 7] = [
 /// Errors of a coefficient above this, in sigmas, are counted.
 const FAR_SIGMAS: f64 = 4.0;
 
-/// The methods; `None` is the diagnosis.
-const METHODS: [Option<BaselineMethod>; 5] = [
+/// A method; `None` is the diagnosis.
+type Method = Option<BaselineMethod>;
+
+const METHODS: [Method; 5] = [
     Some(BaselineMethod::Nis),
     Some(BaselineMethod::LjungBox),
     Some(BaselineMethod::Bic),
@@ -51,50 +53,40 @@ fn with_effect(method: Option<BaselineMethod>) -> Vec<Row<'static, RecordScore>>
         rows.extend([
             share(method, 2, |answer| answer.first_cosine >= 1.0),
             share(method, 3, |answer| answer.all_named),
-            mean(method, 4, |answer| {
-                answer.detected.then_some(answer.names as f64)
-            }),
+            mean(method, 4, |of| of.detected.then_some(of.names as f64)),
         ]);
     }
     // The nine of one record err together: their mean counts once.
-    let coverage = mean(method, 5, |answer| {
-        Some(answer.coefficients?.covered as f64 / 9.0)
-    });
+    let coverage = mean(method, 5, |of| Some(of.coefficients?.covered as f64 / 9.0));
     rows.push(match method {
         None => coverage.at_least(COVERAGE[0], COVERAGE_REASON),
         Some(_) => coverage,
     });
     rows.push(share(method, 6, |answer| {
-        let far = |error: f64| error > FAR_SIGMAS;
-        answer.coefficients.is_none_or(|of| far(of.largest_error))
+        let coefficients = answer.coefficients;
+        coefficients.is_none_or(|of| of.largest_error > FAR_SIGMAS)
     }));
     rows
 }
 
 /// The answer of a method on a record that all are applied to.
-fn answer(method: Option<BaselineMethod>, record: &RecordScore) -> Option<Answer> {
+fn answer(method: Method, record: &RecordScore) -> Option<Answer> {
     let is_compared = !record.methods.is_empty();
     is_compared.then(|| Answer::of(method, record)).flatten()
 }
 
-fn share(
-    method: Option<BaselineMethod>,
-    column: usize,
-    of: fn(&Answer) -> bool,
-) -> Row<'static, RecordScore> {
-    Row::share(name(method, column), move |record| {
-        Some(of(&answer(method, record)?))
-    })
+fn share(method: Method, column: usize, of: fn(&Answer) -> bool) -> Row<'static, RecordScore> {
+    let of = move |record: &RecordScore| Some(of(&answer(method, record)?));
+    Row::share(name(method, column), of)
 }
 
 fn mean(
-    method: Option<BaselineMethod>,
+    method: Method,
     column: usize,
     of: fn(&Answer) -> Option<f64>,
 ) -> Row<'static, RecordScore> {
-    Row::mean(name(method, column), move |record| {
-        of(&answer(method, record)?)
-    })
+    let of = move |record: &RecordScore| of(&answer(method, record)?);
+    Row::mean(name(method, column), of)
 }
 
 /// The figures side by side, with the terms explained.
@@ -135,13 +127,11 @@ mod tests {
             Figure::note("nis: detected at d = 8", "0.017".to_owned()),
         ];
         let table = side_by_side(&figures);
-        assert!(
-            table.contains("| `bic` | – | – | – | 0.890 | – | – | – |"),
-            "{table}"
-        );
-        assert!(
-            table.contains("| `nis` | – | 0.017 | – | – | – | – | – |"),
-            "{table}"
-        );
+        for row in [
+            "| `bic` | – | – | – | 0.890 | – | – | – |",
+            "| `nis` | – | 0.017 | – | – | – | – | – |",
+        ] {
+            assert!(table.contains(row), "{table}");
+        }
     }
 }

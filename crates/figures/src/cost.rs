@@ -34,12 +34,9 @@ impl Peak {
     pub(crate) fn read_mb(&self) -> f64 {
         let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
         let line = status.lines().find(|line| line.starts_with("VmHWM:"));
-        let kibibytes: Option<f64> =
-            line.and_then(|line| line.split_whitespace().nth(1)?.parse().ok());
-        match kibibytes {
-            Some(kibibytes) if self.0 => 1024.0 * kibibytes / 1e6,
-            _ => f64::NAN,
-        }
+        let kibibytes = line.and_then(|line| line.split_whitespace().nth(1)?.parse().ok());
+        let told = kibibytes.filter(|_| self.0);
+        told.map_or(f64::NAN, |kibibytes: f64| 1024.0 * kibibytes / 1e6)
     }
 }
 

@@ -3,11 +3,9 @@
 mod noise;
 mod signatures;
 
-use crate::harness::{Context, Error, Figure};
+use crate::harness::{Context, Error, Figure, in_turn};
 
 /// All figures of the part.
 pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
-    let mut figures = signatures::figures(context.is_small())?;
-    figures.extend(noise::figures(context)?);
-    Ok(figures)
+    in_turn(context, &[signatures::figures, noise::figures])
 }

@@ -3,7 +3,6 @@
 mod dialect;
 mod drawn;
 
-use gyrocal_evaluation::Statistic;
 use gyrocal_instruments::{Description, InstrumentError, propose_map, read_any};
 use gyrocal_record::Record;
 use gyrocal_statistics::deviates::Draw;
@@ -65,26 +64,20 @@ pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
 }
 
 fn rows(what: &str) -> [Row<'static, Outcome>; 2] {
-    let faults = |files: &[Outcome]| {
-        let all = files.iter().filter(|file| !file.fault.is_empty()).count();
-        Statistic::Value(all as f64, files.len() as u64)
-    };
-    let words = |files: &[Outcome]| {
-        let wrong = files.iter().filter(|file| !file.fault.is_empty());
-        let wrong: Vec<String> = wrong
-            .map(|file| format!("{}: {}", file.dialect, file.fault))
-            .collect();
+    let is_wrong = |file: &Outcome| !file.fault.is_empty();
+    let words = move |files: &[Outcome]| {
+        let wrong = files.iter().filter(|file| is_wrong(file));
+        let wrong = wrong.map(|file| format!("{}: {}", file.dialect, file.fault));
         let as_is = files.iter().filter(|file| file.as_is).count();
-        match &wrong[..] {
-            [] => format!(
-                "{as_is} as they are, {} by the proposed map",
-                files.len() - as_is
-            ),
+        let by_map = files.len() - as_is;
+        match &wrong.collect::<Vec<_>>()[..] {
+            [] => format!("{as_is} as they are, {by_map} by the proposed map"),
             wrong => wrong.join("; "),
         }
     };
+    let faults = move |file: &Outcome| usize::from(is_wrong(file));
     [
-        Row::new(format!("{what}: files that are not read"), faults)
+        Row::count(format!("{what}: files that are not read"), faults)
             .at_most(0.0, "the target of all"),
         Row::words(format!("{what}: how they are read"), words),
     ]
@@ -98,10 +91,8 @@ fn outcome(dialect: &Dialect, seed: u64) -> Result<Outcome, Error> {
     let path = folder.path().join("log.csv");
     std::fs::write(&path, dialect.bytes(&record, first_s))?;
     let read = |map: Option<String>| -> Result<Record, InstrumentError> {
-        let description = map
-            .map(|map| Description::parse(&map, "map.toml"))
-            .transpose()?;
-        Ok(read_any(&path, description.as_ref())?.into_rising()?)
+        let description = map.map(|map| Description::parse(&map, "map.toml"));
+        Ok(read_any(&path, description.transpose()?.as_ref())?.into_rising()?)
     };
     let plain = read(None);
     let as_is = plain.is_ok();
@@ -140,9 +131,8 @@ fn record(draw: &mut Draw) -> (Record, f64) {
         let time_s = f64::from(row) * interval_s;
         let force = Rotation3::from_axis_angle(&axis, -EARTH_RAD_PER_S * time_s) * up;
         record.time_s.push(time_s);
-        record
-            .accel_g
-            .push([0, 1, 2].map(|at| force[at] + 1e-5 * draw.normal()));
+        let noisy = [0, 1, 2].map(|at| force[at] + 1e-5 * draw.normal());
+        record.accel_g.push(noisy);
         let celsius = 22.0 + (time_s / 2e4).sin() + 0.02 * draw.normal();
         record.temperature_c.get_or_insert_default().push(celsius);
     }
@@ -156,9 +146,9 @@ fn difference(found: &Record, written: &Record, dialect: &Dialect) -> String {
     if found.len() != written.len() {
         return format!("{} rows of {}", found.len(), written.len());
     }
+    let since_s = |record: &Record, row: usize| record.time_s[row] - record.time_s[0];
     for row in 0..found.len() {
-        let late_s =
-            found.time_s[row] - found.time_s[0] - (written.time_s[row] - written.time_s[0]);
+        let late_s = since_s(found, row) - since_s(written, row);
         if late_s.abs() > TOLERANCE_S {
             return format!("row {row} is late by {late_s} s");
         }

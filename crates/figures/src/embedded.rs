@@ -20,15 +20,12 @@ pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
         return Ok(figures);
     }
     let tools = target::Tools::find();
-    match &tools {
-        Some(tools) => {
-            figures.extend(firmware::figures(tools, context.is_small())?);
-            figures.extend(emitted::figures(tools)?);
-        }
-        None => {
-            let reason = "a tool is missing".to_owned();
-            figures.push(Figure::note("on the target: not judged", reason));
-        }
+    if let Some(tools) = &tools {
+        figures.extend(firmware::figures(tools, context.is_small())?);
+        figures.extend(emitted::figures(tools)?);
+    } else {
+        let reason = "a tool is missing".to_owned();
+        figures.push(Figure::note("on the target: not judged", reason));
     }
     figures.extend(c_interface::figures(tools.as_ref(), &firmware::on_host()?)?);
     Ok(figures)

@@ -26,7 +26,7 @@ const EACH: u64 = 20;
 const SHORT: u64 = 56;
 
 /// Answers that are asked for.
-const LEAST: usize = 5_000;
+const LEAST: f64 = 5_000.0;
 
 /// Answers that are shown with what is wrong.
 const SHOWN: usize = 10;
@@ -43,11 +43,8 @@ const JUDGEMENTS: [(Judgement, &str); 4] = [
 pub(crate) fn of_records(context: &Context) -> Result<Vec<Figure>, Error> {
     let keys = FieldPopulation::wrong_keys()?;
     let mut figures = table(context, "wrong bench keys", keys)?;
-    figures.extend(table(
-        context,
-        "records of users",
-        FieldPopulation::kinds()?,
-    )?);
+    let kinds = FieldPopulation::kinds()?;
+    figures.extend(table(context, "records of users", kinds)?);
     Ok(figures)
 }
 
@@ -71,45 +68,24 @@ pub(crate) fn of_answers(context: &Context) -> Result<Vec<Figure>, Error> {
         let answers = records.records.iter().filter_map(|one| one.answer.clone());
         all.extend(answers.map(|answer| (population.name.clone(), answer)));
     }
-    let faulty = all
-        .iter()
-        .filter(|(_, one)| !(one.faults.is_empty() && one.settled.is_empty()));
-    for (name, one) in faulty.clone().take(SHOWN) {
-        println!(
-            "{name}: {}",
-            [&one.faults[..], &one.settled[..]].concat().join("; ")
-        );
-    }
+    let wrong = all.iter().filter_map(|(name, one)| {
+        let wrong = [&one.faults[..], &one.settled].concat();
+        (!wrong.is_empty()).then(|| format!("{name}: {}", wrong.join("; ")))
+    });
+    wrong.take(SHOWN).for_each(|line| println!("{line}"));
     let share = Statistic::share(&all, |(_, one)| Some(one.faults.is_empty()));
-    let least = if is_full { LEAST } else { 1 } as f64;
-    let settled = all
-        .iter()
-        .filter(|(_, one)| !one.settled.is_empty())
-        .count();
-    let open = all.iter().filter(|(_, one)| one.is_open).count();
+    let least = [if is_full { LEAST } else { 1.0 }, f64::INFINITY];
+    let number = |of: fn(&Checked) -> bool| all.iter().filter(|(_, one)| of(one)).count() as f64;
+    let given = "answers written, validated, read back, and given to every command that takes one";
+    let failed = number(|one| !one.faults.is_empty());
+    let open = "answers whose search was cut, or whose rest is not white beside names";
+    let settled = number(|one| !one.settled.is_empty());
     Ok(vec![
-        Figure::within(
-            "answers of all kinds",
-            [least, f64::INFINITY],
-            all.len() as f64,
-        ),
-        Figure::of_statistic(
-            "answers written, validated, read back, and given to every command that takes one",
-            &share,
-            None,
-            is_full,
-        ),
-        Figure::at_most(
-            "answers of which that failed",
-            0.0,
-            all.iter().filter(|(_, one)| !one.faults.is_empty()).count() as f64,
-            "",
-        ),
-        Figure::note(
-            "answers whose search was cut, or whose rest is not white beside names",
-            open.to_string(),
-        ),
-        Figure::at_most("of these called settled anywhere", 0.0, settled as f64, ""),
+        Figure::within("answers of all kinds", least, all.len() as f64),
+        Figure::of_statistic(given, &share, None, is_full),
+        Figure::at_most("answers of which that failed", 0.0, failed, ""),
+        Figure::note(open, number(|one| one.is_open).to_string()),
+        Figure::at_most("of these called settled anywhere", 0.0, settled, ""),
     ])
 }
 
@@ -165,10 +141,8 @@ fn population(row: FieldPopulation<'_>) -> Population<'_, Fielded> {
         EACH => u64::from(SMALL.contains(&&*row.name)),
         _ => SHORT,
     };
-    let (name, seeds) = (
-        format!("field {}", row.name),
-        [row.first_seed, row.records, small],
-    );
+    let name = format!("field {}", row.name);
+    let seeds = [row.first_seed, row.records, small];
     Population::new(name, seeds, of(DIAGNOSIS, FILES), move |seed| {
         let (outcome, answer) = (row.job)(seed)?;
         let answer = answer.as_ref().map(Checked::of).transpose()?;
@@ -184,11 +158,10 @@ fn counts(records: &[Fielded]) -> String {
         format!("{} {word}", count.count())
     });
     let strengths: Vec<f64> = records.iter().filter_map(|one| one.strength).collect();
-    let strength = match strengths.is_empty() {
-        true => String::new(),
-        false => format!("; {:.1} sigma", median(&strengths)),
-    };
-    counts.join(", ") + &strength
+    match strengths.is_empty() {
+        true => counts.join(", "),
+        false => format!("{}; {:.1} sigma", counts.join(", "), median(&strengths)),
+    }
 }
 
 #[cfg(test)]

@@ -33,19 +33,14 @@ pub(crate) struct Figure {
 
 impl Figure {
     /// A figure that must lie in a closed interval.
-    pub(crate) fn within(name: &str, bounds: [f64; 2], measured: f64) -> Self {
-        Self {
-            name: name.to_owned(),
-            target: match bounds {
-                [low, high] if low == f64::NEG_INFINITY => format!("<= {high}"),
-                [low, high] if high == f64::INFINITY => format!(">= {low}"),
-                [low, high] => format!("{low} to {high}"),
-            },
-            measured: format!("{measured:.3}"),
-            runs: 1,
-            holds: Some(bounds[0] <= measured && measured <= bounds[1]),
-            ..Self::default()
-        }
+    pub(crate) fn within(name: &str, [low, high]: [f64; 2], measured: f64) -> Self {
+        let target = match (low.is_finite(), high.is_finite()) {
+            (false, _) => format!("<= {high}"),
+            (_, false) => format!(">= {low}"),
+            _ => format!("{low} to {high}"),
+        };
+        let holds = low <= measured && measured <= high;
+        Self::told(name, &target, format!("{measured:.3}"), holds)
     }
 
     /// A statistic of a population, which is as large as its target asks for (`full`), or smaller.
@@ -79,32 +74,33 @@ impl Figure {
 
     /// A cost with an upper limit. NaN stands for a failed measurement, which does not hold.
     pub(crate) fn at_most(name: &str, limit: f64, measured: f64, unit: &str) -> Self {
-        let decimals = if measured.fract() == 0.0 || measured.abs() >= 1e3 {
-            0
-        } else {
-            2
-        };
-        let [target, measured_text] = [
-            format!("<= {limit} {unit}"),
-            format!("{measured:.decimals$} {unit}"),
-        ];
-        Self {
-            target: target.trim_end().to_owned(),
-            measured: measured_text.trim_end().to_owned(),
-            ..Self::within(name, [f64::NEG_INFINITY, limit], measured)
-        }
+        let is_whole = measured.fract() == 0.0 || measured.abs() >= 1e3;
+        let decimals = if is_whole { 0 } else { 2 };
+        let told = format!("{measured:.decimals$} {unit}");
+        let target = format!("<= {limit} {unit}");
+        let told = told.trim_end().to_owned();
+        Self::told(name, target.trim_end(), told, measured <= limit)
     }
 
     /// A statement that must be true.
     pub(crate) fn truth(name: &str, measured: bool) -> Self {
+        let word = if measured { "yes" } else { "no" };
+        Self::told(name, "yes", word.to_owned(), measured)
+    }
+
+    /// A statement that must be true, with target and measurement in words.
+    pub(crate) fn told(name: &str, target: &str, measured: String, holds: bool) -> Self {
         Self {
-            name: name.to_owned(),
-            target: "yes".to_owned(),
-            measured: if measured { "yes" } else { "no" }.to_owned(),
-            runs: 1,
-            holds: Some(measured),
-            ..Self::default()
+            target: target.to_owned(),
+            holds: Some(holds),
+            ..Self::note(name, measured)
         }
+    }
+
+    /// An upper limit that is told by its order of magnitude, as the measurement is.
+    pub(crate) fn at_most_small(name: &str, limit: f64, measured: f64) -> Self {
+        let target = format!("<= {limit:e}");
+        Self::told(name, &target, format!("{measured:.1e}"), measured <= limit)
     }
 
     /// A figure without a target.
@@ -120,10 +116,13 @@ impl Figure {
     /// A time, or a ratio of times: on a machine that does other work as well, as that of a small version may, it says
     /// little, and is shown and not judged.
     pub(crate) fn timed(self, small: bool) -> Self {
-        Self {
-            holds: self.holds.filter(|_| !small),
-            ..self
-        }
+        self.judged(!small)
+    }
+
+    /// The same, judged or only shown.
+    pub(crate) fn judged(self, is_judged: bool) -> Self {
+        let holds = self.holds.filter(|_| is_judged);
+        Self { holds, ..self }
     }
 
     pub(crate) fn over(self, runs: usize, seeds: impl Into<String>) -> Self {
@@ -140,14 +139,12 @@ pub(crate) fn table_of(figures: &[Figure]) -> String {
     let commit = commit(&workspace());
     let with_reasons = figures.iter().any(|figure| !figure.reason.is_empty());
     let mut table = Table::new();
-    let mut header = vec![
-        "figure", "target", "measured", "runs", "seeds", "commit", "holds",
-    ];
-    header.extend(with_reasons.then_some("reason of the target"));
+    let header = "figure target measured runs seeds commit holds".split(' ');
+    let reasons = with_reasons.then_some("reason of the target");
     table
         .load_style(presets::ASCII_MARKDOWN)
         .set_content_arrangement(ContentArrangement::Disabled)
-        .set_header(header);
+        .set_header(header.chain(reasons));
     for figure in figures {
         let holds = match figure.holds {
             Some(true) => "yes",
@@ -156,25 +153,10 @@ pub(crate) fn table_of(figures: &[Figure]) -> String {
             None => "",
         };
         let runs = figure.runs.to_string();
-        let Figure {
-            name,
-            target,
-            measured,
-            seeds,
-            reason,
-            ..
-        } = figure;
-        let mut row = vec![
-            name.as_str(),
-            target,
-            measured,
-            &runs,
-            seeds,
-            &commit,
-            holds,
-        ];
-        row.extend(with_reasons.then_some(reason.as_str()));
-        table.add_row(row);
+        let row = [&figure.name, &figure.target, &figure.measured, &runs];
+        let row = row.into_iter().chain([&figure.seeds, &commit]);
+        let row = row.map(String::as_str).chain([holds]);
+        table.add_row(row.chain(with_reasons.then_some(figure.reason.as_str())));
     }
     table.to_string()
 }

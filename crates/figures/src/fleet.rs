@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
 
+use gyrocal_statistics::median;
 use gyrocal_testkit::{Tool, leave_out, system_python, tool};
 use serde_json::Value;
 
@@ -58,10 +59,8 @@ fn of_package(context: &Context) -> Result<Vec<Figure>, Error> {
         return Ok(vec![Figure::note("the Python package: not judged", reason)]);
     }
     let mut wheels = std::fs::read_dir(folder().join("wheels"))?;
-    let wheel = wheels
-        .next()
-        .ok_or("crates/python/build made no wheel")??
-        .path();
+    let wheel = wheels.next().ok_or("crates/python/build made no wheel")?;
+    let wheel = wheel?.path();
     let megabytes = std::fs::metadata(&wheel)?.len() as f64 / 1e6;
     let mut figures = vec![Figure::at_most("wheel: size", 15.0, megabytes, "MB")];
     figures.push(import(if small { 3 } else { 15 })?);
@@ -101,9 +100,8 @@ fn measured_by(python: &Path, arguments: &[&str]) -> Result<Measured, Error> {
     let script = root().join(PACKAGE).join("measure.py");
     let printed = output(python.current_dir(root()).arg(script).args(arguments))?;
     let json = printed.lines().find(|line| line.starts_with('{'));
-    Ok(Measured(serde_json::from_str(
-        json.ok_or("no measurement was printed")?,
-    )?))
+    let json = json.ok_or("no measurement was printed")?;
+    Ok(Measured(serde_json::from_str(json)?))
 }
 
 /// The same of a measurement that takes minutes, kept by the hash of the package.
@@ -130,41 +128,29 @@ fn spark(records: usize) -> Result<Figure, Error> {
 }
 
 fn import(rounds: usize) -> Result<Figure, Error> {
-    let mut seconds = Vec::with_capacity(rounds);
-    for _ in 0..rounds {
-        seconds.push(measured(&["import"])?.of("seconds"));
-    }
-    seconds.sort_by(f64::total_cmp);
+    let seconds = (0..rounds).map(|_| Ok(measured(&["import"])?.of("seconds")));
+    let seconds: Vec<f64> = seconds.collect::<Result<_, Error>>()?;
     let name = "import of the package, NumPy included: median";
-    Ok(Figure::at_most(name, 0.3, seconds[rounds / 2], "s").over(rounds, ""))
+    Ok(Figure::at_most(name, 0.3, median(&seconds), "s").over(rounds, ""))
 }
 
 /// A new environment, the wheel with what it needs, and the command, where no Rust can be found.
 fn first_diagnosis(wheel: &Path) -> Result<Figure, Error> {
     let environment = tempfile::tempdir()?;
     let place = environment.path();
-    let path = "/usr/local/bin:/usr/bin:/bin";
-    let clean = |program: &Path| {
+    let clean = |program: &Path, arguments: &str| {
         let mut command = Command::new(program);
-        command
-            .current_dir(root())
-            .env("PATH", path)
-            .env_remove("CARGO_HOME");
+        command.env("PATH", "/usr/local/bin:/usr/bin:/bin");
+        command.current_dir(root()).env_remove("CARGO_HOME");
+        command.args(arguments.split(' '));
         command
     };
     let started = Instant::now();
-    output(clean(&system_python()).args(["-m", "venv"]).arg(place))?;
-    let pip = [
-        "-m",
-        "pip",
-        "install",
-        "--quiet",
-        "--disable-pip-version-check",
-    ];
-    output(clean(&place.join("bin/python")).args(pip).arg(wheel))?;
-    let command = place.join("bin/gyrocal");
-    let arguments = ["diagnose", RECORD, "--exit-code", "--bench", BENCH];
-    let diagnosed = clean(&command).args(arguments).output()?;
+    output(clean(&system_python(), "-m venv").arg(place))?;
+    let pip = "-m pip install --quiet --disable-pip-version-check";
+    output(clean(&place.join("bin/python"), pip).arg(wheel))?;
+    let diagnose = format!("diagnose {RECORD} --exit-code --bench {BENCH}");
+    let diagnosed = clean(&place.join("bin/gyrocal"), &diagnose).output()?;
     let seconds = started.elapsed().as_secs_f64();
     let found = diagnosed.status.code() == Some(EFFECTS_FOUND);
     let name = "first diagnosis of the example in a new environment without Rust, with install";
@@ -176,11 +162,7 @@ fn first_diagnosis(wheel: &Path) -> Result<Figure, Error> {
 fn overhead(rounds: usize) -> Result<Figure, Error> {
     let build = ["build", "--release", "--quiet", "--package", "gyrocal-cli"];
     output(Command::new(cargo()).current_dir(root()).args(build))?;
-    let target = std::env::current_exe()?;
-    let command = target
-        .parent()
-        .ok_or("no folder of this program")?
-        .join("gyrocal");
+    let command = std::env::current_exe()?.with_file_name("gyrocal");
     let arguments = ["diagnose", RECORD, "--bench", BENCH];
     let (mut by_command, mut by_call) = (f64::INFINITY, f64::INFINITY);
     for _ in 0..rounds {

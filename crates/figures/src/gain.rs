@@ -26,46 +26,29 @@ const CROSS_AXES: [&str; 6] = [
 
 /// All figures of the part.
 pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
-    let extended = |record: &RecordScore| record.findings.iter().any(is_accepted);
-    let clean = Row::bound(
-        "clean records: extensions accepted, one-sided 95 % upper bound",
-        extended,
-    )
-    .at_most(
-        0.02,
-        "the level is 1 %: of 2000 twenty are due, and 27 within the bound",
-    );
+    let is_accepted = |one: &FindingScore| one.accepted == Some(true);
+    let extended = move |record: &RecordScore| record.findings.iter().any(is_accepted);
+    let name = "clean records: extensions accepted, one-sided 95 % upper bound";
+    let level = "the level is 1 %: of 2000 twenty are due, and 27 within the bound";
+    let clean = Row::bound(name, extended).at_most(0.02, level);
     let mut figures = context.measure(&population(CLEAN), &[clean])?;
     let gains = |record: &RecordScore| -> Vec<bool> {
         let gains = |one: &FindingScore| one.gain_nats.is_some_and(|nats| nats > 0.0);
         record.findings.iter().map(gains).collect()
     };
+    let name = "d = 8: significant terms that gain under cross-validation";
+    let nats = |record: &RecordScore| record.gain_nats;
     let with_effect = [
-        Row::each(
-            "d = 8: significant terms that gain under cross-validation",
-            gains,
-        )
-        .at_least(0.95, "as often as a set of 95 % holds the cause"),
-        Row::median(
-            "d = 8: median gain of a record, nats",
-            |record: &RecordScore| record.gain_nats,
-        )
-        .at_least(8.0, "a quarter of the 32 nats of an effect of known size"),
+        Row::each(name, gains).at_least(0.95, "as often as a set of 95 % holds the cause"),
+        Row::median("d = 8: median gain of a record, nats", nats)
+            .at_least(8.0, "a quarter of the 32 nats of an effect of known size"),
     ];
     figures.extend(context.measure(&population(WITH_EFFECT), &with_effect)?);
-    let across = Population::new(
-        "cross-axis",
-        [800_000, 300, 10],
-        of(DIAGNOSIS, &[file!()]),
-        cross_axis,
-    );
+    let sources = of(DIAGNOSIS, &[file!()]);
+    let across = Population::new("cross-axis", [800_000, 300, 10], sources, cross_axis);
     figures.extend(context.measure(&across, &of_coefficients())?);
     figures.extend(filters());
     Ok(figures)
-}
-
-fn is_accepted(finding: &FindingScore) -> bool {
-    finding.accepted == Some(true)
 }
 
 /// Errors of the coefficients, of the nominal and of the extended model.
@@ -80,23 +63,17 @@ struct Errors {
 /// Of records with a large cross-axis term.
 fn of_coefficients() -> [Row<'static, Errors>; 4] {
     let name = |what: &str| format!("0.05 deg/h/g across an axis: {what}");
+    let largest = |model: usize| move |of: &Errors| Some(of.largest[model]);
+    let nees = |model: usize| move |of: &Errors| Some(of.nees[model]);
+    let of_nominal = name("median of the largest nominal error, sigmas");
+    let of_extended = name("median of the largest extended error, sigmas");
     [
-        Row::median(
-            name("median of the largest nominal error, sigmas"),
-            |of: &Errors| Some(of.largest[0]),
-        )
-        .at_least(10.0, "the nominal model is wrong beyond doubt"),
-        Row::mean(name("mean NEES of the extended model"), |of: &Errors| {
-            Some(of.nees[1])
-        })
-        .between([8.5, 9.5], "nine coefficients, half of one for wrong names"),
-        Row::median(
-            name("median of the largest extended error, sigmas"),
-            |of: &Errors| Some(of.largest[1]),
-        ),
-        Row::median(name("median NEES of the nominal model"), |of: &Errors| {
-            Some(of.nees[0])
-        }),
+        Row::median(of_nominal, largest(0))
+            .at_least(10.0, "the nominal model is wrong beyond doubt"),
+        Row::mean(name("mean NEES of the extended model"), nees(1))
+            .between([8.5, 9.5], "nine coefficients, half of one for wrong names"),
+        Row::median(of_extended, largest(1)),
+        Row::median(name("median NEES of the nominal model"), nees(0)),
     ]
 }
 
@@ -129,11 +106,7 @@ fn cross_axis(seed: u64) -> Result<Errors, Error> {
 fn filters() -> [Figure; 2] {
     let figure = |length: &str, most: f64, [state, sigma]: [f64; 2]| {
         let name = format!("extended filter less that of the catalogue, sigmas: {length}");
-        Figure {
-            target: format!("<= {most:e}"),
-            measured: format!("{:.1e}", state.max(sigma)),
-            ..Figure::within(&name, [f64::NEG_INFINITY, most], state.max(sigma))
-        }
+        Figure::at_most_small(&name, most, state.max(sigma))
     };
     [
         figure("one step", 1e-9, extended_comparison::after_one_step()),

@@ -78,28 +78,15 @@ mod tests {
                 let read = |file: &Path| Ok(vec![u8::from(file == changed)]);
                 section.sources.hash_with(&root, read).unwrap()
             };
-            let (before, files) = (
-                hash(Path::new("")),
-                section.sources.all_files(&root).unwrap(),
-            );
-            let Sources {
-                packages,
-                files: further,
-            } = section.sources;
-            for list in packages.iter().chain(further) {
+            let files = section.sources.all_files(&root).unwrap();
+            let (name, before) = (&section.name, hash(Path::new("")));
+            let lists = section.sources.packages.iter();
+            for list in lists.chain(section.sources.files) {
                 // Of the root package the library.
                 let list = if list.is_empty() { "src" } else { list };
-                let mut of_list = files.iter().filter(|file| file.starts_with(list));
-                let changed = of_list
-                    .next()
-                    .unwrap_or_else(|| panic!("{}: no file in {list}", section.name));
-                assert_ne!(
-                    hash(changed),
-                    before,
-                    "{}: {}",
-                    section.name,
-                    changed.display()
-                );
+                let changed = files.iter().find(|file| file.starts_with(list));
+                let changed = changed.unwrap_or_else(|| panic!("{name}: no file in {list}"));
+                assert_ne!(hash(changed), before, "{name}: {}", changed.display());
             }
         }
     }
@@ -107,9 +94,10 @@ mod tests {
     #[test]
     fn each_section_has_a_script() {
         let folder = workspace().join(".ci/slow");
-        let mut scripts: Vec<String> = std::fs::read_dir(&folder)
-            .unwrap()
-            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        let scripts = std::fs::read_dir(&folder).unwrap();
+        let name = |entry: std::io::Result<std::fs::DirEntry>| entry.unwrap().file_name();
+        let mut scripts: Vec<String> = scripts
+            .map(|entry| name(entry).into_string().unwrap())
             .collect();
         let all = sections().unwrap();
         for section in &all {

@@ -11,7 +11,6 @@
 //!   `cargo figures night` reads them ([`Seeds`]).
 
 mod context;
-mod costs;
 pub(crate) mod night;
 pub(crate) mod pages;
 mod population;
@@ -26,6 +25,13 @@ pub(crate) use context::{Context, Seeds, Size};
 pub(crate) use population::{Population, Records};
 pub(crate) use row::Row;
 pub(crate) use sources::{CALIBRATION, DIAGNOSIS, INSTRUMENTS, Listed, PLANTS, Sources, of};
+use topic::Measure;
+
+/// The figures of some measurements, one after the other.
+pub(crate) fn in_turn(context: &Context, all: &[Measure]) -> Result<Vec<Figure>, Error> {
+    let each: Result<Vec<Vec<Figure>>, Error> = all.iter().map(|one| one(context)).collect();
+    Ok(each?.concat())
+}
 
 /// Range of the coverage of 95 % intervals, and its reason.
 pub(crate) const COVERAGE: [f64; 2] = [0.93, 0.97];

@@ -4,7 +4,7 @@ mod builds;
 mod structure;
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use gyrocal_evaluation::FieldPopulation;
 use gyrocal_testkit::{snapshot, workspace};
@@ -36,11 +36,8 @@ pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
     let root = workspace();
     let mut figures = structure::figures(&root)?.to_vec();
     let small = context.is_small();
-    figures.extend(lines(&root)?.map(|lines| Figure {
-        // Shown at every commit, and judged at full size.
-        holds: lines.holds.filter(|_| !small),
-        ..lines
-    }));
+    // Shown at every commit, and judged at full size.
+    figures.extend(lines(&root)?.map(|lines| lines.judged(!small)));
     figures.extend(presentation(&root)?);
     figures.extend(topics(&root)?);
     if !small {
@@ -51,10 +48,6 @@ pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
 
 /// Lines of Rust in `src`, without those that are generated.
 fn lines(root: &Path) -> Result<[Figure; 3], Error> {
-    let mut packages = vec![root.join("codegen/emit"), root.join("codegen/plant")];
-    for package in std::fs::read_dir(root.join("crates"))? {
-        packages.push(package?.path());
-    }
     let of_file = |bytes: &[u8]| bytes.iter().filter(|byte| **byte == b'\n').count() as f64;
     let of_folder = |folder: &Path| -> f64 {
         let files = snapshot(folder).into_iter();
@@ -73,31 +66,37 @@ fn lines(root: &Path) -> Result<[Figure; 3], Error> {
         };
     }
     let evidence = EVIDENCE.map(|name| of(&root.join("crates").join(name)));
-    let all: f64 = packages.iter().map(|package| of(package)).sum();
-    let figure = |name: &str, limit, lines| Figure {
-        measured: format!("{lines:.0}"),
-        ..Figure::at_most(name, limit, lines, "")
-    };
+    let all = packages(root)?.iter().map(|package| of(package)).sum();
+    let figure = |name: &str, limit, lines| Figure::at_most(name, limit, lines, "");
+    let of_evidence = format!("lines of Rust in src of {}", EVIDENCE.join(", "));
+    let of_all = "lines of Rust in src of all packages";
     Ok([
-        figure(
-            &format!("lines of Rust in src of {}", EVIDENCE.join(", ")),
-            EVIDENCE_LINES,
-            evidence.iter().sum(),
-        ),
+        figure(&of_evidence, EVIDENCE_LINES, evidence.iter().sum()),
         figure("lines of presentation", PRESENTATION_LINES, presentation),
-        figure(
-            "lines of Rust in src of all packages",
-            TREE_LINES,
-            all + of(root),
-        ),
+        figure(of_all, TREE_LINES, all),
     ])
+}
+
+/// Folders of all packages of the workspace.
+fn packages(root: &Path) -> Result<Vec<PathBuf>, Error> {
+    let mut packages = ["", "codegen/emit", "codegen/plant"]
+        .map(|of| root.join(of))
+        .to_vec();
+    packages.extend(crates(root)?);
+    packages.sort();
+    Ok(packages)
+}
+
+/// Folders of the packages in `crates`.
+fn crates(root: &Path) -> Result<Vec<PathBuf>, Error> {
+    let entries = std::fs::read_dir(root.join("crates"))?;
+    entries.map(|entry| Ok(entry?.path())).collect()
 }
 
 /// Packages that draw pictures, by what they depend on, and packages that head an answer.
 fn presentation(root: &Path) -> Result<[Figure; 2], Error> {
     let (mut draw, mut head) = (0.0, 0.0);
-    for package in std::fs::read_dir(root.join("crates"))? {
-        let package = package?.path();
+    for package in crates(root)? {
         let manifest = std::fs::read_to_string(package.join("Cargo.toml"))?;
         draw += f64::from(manifest.contains("resvg"));
         let files = snapshot(&package.join("src"));

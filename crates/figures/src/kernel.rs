@@ -52,8 +52,6 @@ fn rounding_errors() -> Vec<Figure> {
             }
         }
     }
-    let figures = figures.into_iter();
-    figures
-        .map(|figure| figure.over(8, "tests/data/numerics"))
-        .collect()
+    let over = |figure: Figure| figure.over(8, "tests/data/numerics");
+    figures.into_iter().map(over).collect()
 }

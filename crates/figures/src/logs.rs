@@ -45,6 +45,15 @@ fn described(rate_hz: f64, latitude_deg: f64, more: &str) -> Result<Description,
     Ok(Description::parse(&text, "log.toml")?)
 }
 
+/// Why not all hidden terms are found.
+const REACHED: &str = "what a test that does not know the scatter can reach";
+
+/// Whether a term is among the names of a finding; `None` where nothing was found.
+fn in_a_set(hidden: &String, found: &[Vec<String>]) -> Option<bool> {
+    let in_a_set = found.iter().any(|names| names.contains(hidden));
+    (!found.is_empty()).then_some(in_a_set)
+}
+
 /// Most error and sigma of an estimate over those of projection alone, and its reason.
 const OVER_PROJECTION: f64 = 1.05;
 const OVER_PROJECTION_REASON: &str =

@@ -81,27 +81,23 @@ impl Extent {
             None if self.small => Size::Small,
             None => Size::Full,
         };
-        let context = Context::new(size, Seeds::Development)
-            .writing(self.write)
-            .of_records(self.named.clone());
-        match self.small {
-            true => context,
-            false => context.kept(gyrocal_testkit::workspace().join("target/figures")),
+        Context {
+            write: self.write,
+            named: self.named.clone(),
+            store: (!self.small).then(|| gyrocal_testkit::workspace().join("target/figures")),
+            ..Context::new(size, Seeds::Development)
         }
     }
 }
 
 fn definition(topics: &[Topic]) -> Command {
     let topics = topics.iter().map(|topic| {
-        let parts = topic
-            .parts
-            .iter()
-            .map(|part| format!("  {}: {}", part.name, part.about));
-        let parts: Vec<String> = parts.collect();
+        let parts = topic.parts.iter();
+        let parts = parts.map(|part| format!("\n  {}: {}", part.name, part.about));
         // The arguments bring a text of their own, which is not that of the topic.
         Extent::augment_args(Command::new(topic.name.clone()))
             .about(topic.about.clone())
-            .after_help(format!("Parts:\n{}", parts.join("\n")))
+            .after_help(format!("Parts:{}", parts.collect::<String>()))
     });
     let night = Night::augment_args(Command::new("night"))
         .about("Every part at full size on report seeds, in pieces; renews the pages");
@@ -120,33 +116,28 @@ fn main() -> ExitCode {
     if let Some(arguments) = before::as_command() {
         return ExitCode::from(gyrocal_cli::run(arguments));
     }
-    let topics = match topics() {
-        Ok(topics) => topics,
-        Err(error) => return failed(&error),
-    };
-    let matches = definition(&topics).get_matches();
-    let measured = match matches.subcommand() {
-        Some(("night", matches)) => Night::from_arg_matches(matches)
-            .map_err(Error::from)
-            .and_then(|night| night.run(&topics)),
-        Some(("check", matches)) => Check::from_arg_matches(matches)
-            .map_err(Error::from)
-            .and_then(|asked| check(&topics, asked.all)),
-        Some(("section", matches)) => {
-            let section = Section::from_arg_matches(matches).map_err(Error::from);
-            return match section.and_then(|section| section.run()) {
-                Ok(()) => ExitCode::SUCCESS,
-                Err(error) => failed(&error),
-            };
-        }
-        Some((name, matches)) => Extent::from_arg_matches(matches)
-            .map_err(Error::from)
-            .and_then(|extent| measured(&topics, name, &extent)),
-        None => Ok(Vec::new()),
-    };
-    match measured {
+    match asked() {
         Ok(figures) => concluded(&figures),
-        Err(error) => failed(&error),
+        Err(error) => {
+            eprintln!("figures could not be measured: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// The figures that the command asks for.
+fn asked() -> Result<Vec<Figure>, Error> {
+    let topics = topics()?;
+    let matches = definition(&topics).get_matches();
+    match matches.subcommand() {
+        Some(("night", matches)) => Night::from_arg_matches(matches)?.run(&topics),
+        Some(("check", matches)) => check(&topics, Check::from_arg_matches(matches)?.all),
+        Some(("section", matches)) => {
+            Section::from_arg_matches(matches)?.run()?;
+            Ok(Vec::new())
+        }
+        Some((name, matches)) => measured(&topics, name, &Extent::from_arg_matches(matches)?),
+        None => Ok(Vec::new()),
     }
 }
 
@@ -156,8 +147,7 @@ fn measured(topics: &[Topic], name: &str, extent: &Extent) -> Result<Vec<Figure>
     let topic = topics
         .find(|topic| topic.name == name)
         .ok_or("no topic of this name")?;
-    let context = extent.context();
-    let mut figures = topic.figures(&context, &extent.parts, |_, _| Ok(()))?;
+    let mut figures = topic.figures(&extent.context(), &extent.parts)?;
     if let Some(path) = &extent.out {
         written(path, topic, extent, &figures)?;
     }
@@ -193,37 +183,26 @@ fn check(topics: &[Topic], all: bool) -> Result<Vec<Figure>, Error> {
         let begin = std::time::Instant::now();
         let mut figures = (part.figures)(&context)?;
         figures.extend(pages::compared(topic, &figures));
-        println!(
-            "{topic}, {} ({:.0} s)\n{}",
-            part.name,
-            begin.elapsed().as_secs_f64(),
-            table_of(&figures)
-        );
-        let missed = figures.iter().filter(|figure| figure.holds == Some(false));
-        match missed.clone().count() {
-            0 => stamp.write()?,
-            _ => failed.extend(missed.cloned()),
+        let (s, table) = (begin.elapsed().as_secs_f64(), table_of(&figures));
+        println!("{topic}, {} ({s:.0} s)\n{table}", part.name);
+        figures.retain(|figure| figure.holds == Some(false));
+        if figures.is_empty() {
+            stamp.write()?;
         }
+        failed.extend(figures);
     }
     Ok(failed)
 }
 
 /// Writes a table into a file of the user.
 fn written(path: &Path, topic: &Topic, extent: &Extent, figures: &[Figure]) -> Result<(), Error> {
-    let parts: String = extent
-        .parts
-        .iter()
-        .map(|part| format!(" --part {part}"))
-        .collect();
-    let small = if extent.small { " --small" } else { "" };
-    let records = extent
-        .records
-        .map_or_else(String::new, |most| format!(" --records {most}"));
-    let name = &topic.name;
-    let page = format!(
-        "# Figures: {name}\n\nPrinted by `cargo figures {name}{parts}{small}{records}`.\n\n{}\n",
-        table_of(figures)
-    );
+    let parts = extent.parts.iter().map(|part| format!(" --part {part}"));
+    let small = extent.small.then(|| " --small".to_owned());
+    let records = extent.records.map(|most| format!(" --records {most}"));
+    let options: String = parts.chain(small).chain(records).collect();
+    let (name, table) = (&topic.name, table_of(figures));
+    let page =
+        format!("# Figures: {name}\n\nPrinted by `cargo figures {name}{options}`.\n\n{table}\n");
     Ok(gyrocal_record::write_whole(path, page.as_bytes())?)
 }
 
@@ -232,18 +211,11 @@ fn concluded(figures: &[Figure]) -> ExitCode {
     if !figures.is_empty() {
         println!("{}", table_of(figures));
     }
-    let failed = figures
-        .iter()
-        .filter(|figure| figure.holds == Some(false))
-        .count();
+    let failed = figures.iter().filter(|one| one.holds == Some(false));
+    let failed = failed.count();
     if failed == 0 {
         return ExitCode::SUCCESS;
     }
     eprintln!("{failed} of {} figures do not hold", figures.len());
-    ExitCode::FAILURE
-}
-
-fn failed(error: &Error) -> ExitCode {
-    eprintln!("figures could not be measured: {error}");
     ExitCode::FAILURE
 }

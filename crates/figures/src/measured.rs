@@ -28,11 +28,9 @@ impl Measured {
     /// Adds a value that is to be in the range of its row; `*` in the name of a row stands for an axis.
     fn judge(&mut self, name: &str, value: f64) -> &mut Figure {
         let of_axis = |key: String, axis| key.replace(&format!("gyro_{axis}:"), "gyro_*:");
-        let key = gyrocal_record::AXES
-            .into_iter()
-            .fold(name.to_owned(), of_axis);
-        let row = self.rows.get(&key).and_then(Value::as_array);
-        let figure = match row.map_or(&[][..], Vec::as_slice) {
+        let axes = gyrocal_record::AXES.into_iter();
+        let row = self.rows.get(&axes.fold(name.to_owned(), of_axis));
+        let figure = match row.and_then(Value::as_array).map_or(&[][..], Vec::as_slice) {
             [Value::Float(low), Value::Float(high), Value::String(reason)] => Figure {
                 reason: reason.clone(),
                 ..Figure::within(name, [*low, *high], value)
@@ -42,8 +40,8 @@ impl Measured {
                 false,
             ),
         };
+        let last = self.figures.len();
         self.figures.push(figure);
-        let last = self.figures.len() - 1;
         &mut self.figures[last]
     }
 
@@ -64,9 +62,8 @@ pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
     };
     xsens::measure(&mut measured)?;
     ring_laser::measure(&mut measured)?;
-    let text = page::fill(TEMPLATE, &measured.values)?;
-    let path = page::docs().join("measured-data.md");
-    let same = page::renewed(&path, &text, "instruments --part measured", context.write)?;
+    let (topic, values) = ("instruments --part measured", &measured.values);
+    let same = page::filled("measured-data.md", TEMPLATE, values, topic, context.write)?;
     let mut figures = measured.figures;
     let name = "docs/measured-data.md is what is measured";
     figures.push(Figure::truth(name, same));

@@ -34,19 +34,15 @@ pub(crate) fn population(cell: PopulationCell) -> Population<'static, RecordScor
     let small = CELLS.iter().find(|(other, _)| *other == cell);
     let seeds = [0, cell.full_runs(), small.map_or(0, |(_, small)| *small)];
     let sources = of(DIAGNOSIS, &[file!()]);
-    Population::new(
-        format!("cell-{}", cell.name()),
-        seeds,
-        sources,
-        move |seed| {
-            let is_compared = [CLEAN, WITH_EFFECT].contains(&cell);
-            let methods = match is_compared && seed % Seeds::REPORT < COMPARED {
-                true => &BaselineMethod::ALL[..],
-                false => &[],
-            };
-            Ok(cell.evaluate(seed, methods)?)
-        },
-    )
+    let is_compared = [CLEAN, WITH_EFFECT].contains(&cell);
+    let job = move |seed| {
+        let methods = match is_compared && seed % Seeds::REPORT < COMPARED {
+            true => &BaselineMethod::ALL[..],
+            false => &[],
+        };
+        Ok(cell.evaluate(seed, methods)?)
+    };
+    Population::new(format!("cell-{}", cell.name()), seeds, sources, job)
 }
 
 /// All figures of the part.
@@ -70,9 +66,8 @@ fn row(cell: PopulationCell, measure: Measure) -> Row<'static, RecordScore> {
         statistic,
         target,
     } = measure;
-    let row = Row::new(format!("{}: {figure}", cell.title()), move |_| {
-        statistic.clone()
-    });
+    let name = format!("{}: {figure}", cell.title());
+    let row = Row::new(name, move |_| statistic.clone());
     match target {
         Some((target, reason)) => row.with_target(target, reason),
         None => row,

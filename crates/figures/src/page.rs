@@ -9,26 +9,31 @@ use crate::values::{Values, length_of_number, parsed};
 /// The template with every `{{name}}` replaced.
 pub(crate) fn fill(template: &str, values: &Values) -> Result<String, Error> {
     let mut unused: Vec<&str> = values.names().collect();
-    let mut page = String::new();
-    let mut rest = template;
+    let (mut page, mut rest) = (String::new(), template);
     while let Some((before, after)) = rest.split_once("{{") {
-        let (name, after) = after
-            .split_once("}}")
-            .ok_or("a place of a template that does not end")?;
-        let value = values
-            .get(name)
-            .ok_or_else(|| format!("nothing is measured for the place {{{{{name}}}}}"))?;
+        let place = after.split_once("}}");
+        let (name, after) = place.ok_or("a place of a template that does not end")?;
+        let value = values.get(name);
         page += before;
-        page += value;
+        page += value.ok_or_else(|| format!("nothing is measured for the place {{{{{name}}}}}"))?;
         unused.retain(|other| *other != name);
         rest = after;
     }
-    page += rest;
-    if unused.is_empty() {
-        Ok(page)
-    } else {
-        Err(format!("the template has no place for: {}", unused.join(", ")).into())
+    match unused.is_empty() {
+        true => Ok(page + rest),
+        false => Err(format!("the template has no place for: {}", unused.join(", ")).into()),
     }
+}
+
+/// Fills the template of a page of the documentation and holds it against the committed one, or renews that.
+pub(crate) fn filled(
+    file: &str,
+    template: &str,
+    values: &Values,
+    topic: &str,
+    write: bool,
+) -> Result<bool, Error> {
+    renewed(&docs().join(file), &fill(template, values)?, topic, write)
 }
 
 /// Renews a committed file with leave to `write`. Otherwise `true` if it equals the measurement, numbers within
@@ -83,28 +88,17 @@ fn same_line(a: &str, b: &str) -> bool {
 #[derive(Debug, PartialEq)]
 enum Piece<'a> {
     Word(&'a str),
-    Number {
-        value: f64,
-        /// Value of one unit in the last printed digit.
-        digit: f64,
-    },
+    /// A value, and that of one unit in its last printed digit.
+    Number(f64, f64),
 }
 
 impl Piece<'_> {
     fn is_close(&self, other: &Self) -> bool {
-        match (self, other) {
-            (
-                Self::Number { value, digit },
-                Self::Number {
-                    value: to,
-                    digit: as_fine,
-                },
-            ) => {
-                // A little more than one, for sums of rounded numbers.
-                digit.max(*as_fine) * 1.001 >= (value - to).abs()
-            }
-            _ => false,
-        }
+        let (Self::Number(one, digit), Self::Number(to, as_fine)) = (self, other) else {
+            return false;
+        };
+        // A little more than one, for sums of rounded numbers.
+        digit.max(*as_fine) * 1.001 >= (one - to).abs()
     }
 }
 
@@ -126,7 +120,7 @@ fn pieces(line: &str) -> Vec<Piece<'_>> {
         };
         let digit = 10_f64.powi(last.unwrap_or(0));
         pieces.push(Piece::Word(&line[word..at]));
-        pieces.push(Piece::Number { value, digit });
+        pieces.push(Piece::Number(value, digit));
         at += length;
         word = at;
     }
@@ -195,21 +189,14 @@ mod tests {
             ("catalogue.md", crate::catalogue::TEMPLATE),
         ] {
             let page = std::fs::read_to_string(docs().join(name)).expect("the page is committed");
-            let mut texts = template
-                .split("{{")
-                .map(|part| match part.split_once("}}") {
-                    Some((_, text)) => text,
-                    None => part,
-                });
-            let mut rest = texts
-                .next()
-                .and_then(|first| page.strip_prefix(first))
-                .expect("the page begins as its template does");
+            let parts = template.split("{{");
+            let mut texts = parts.map(|part| part.split_once("}}").map_or(part, |(_, text)| text));
+            let first = texts.next().and_then(|first| page.strip_prefix(first));
+            let mut rest = first.expect("the page begins as its template does");
             let texts: Vec<&str> = texts.collect();
             for text in &texts {
-                let place = rest
-                    .find(text)
-                    .unwrap_or_else(|| panic!("{name} lacks: {text}"));
+                let place = rest.find(text);
+                let place = place.unwrap_or_else(|| panic!("{name} lacks: {text}"));
                 rest = &rest[place + text.len()..];
             }
             // What is filled in may stand last.

@@ -7,7 +7,6 @@ use std::collections::BTreeMap;
 use std::process::Command;
 
 use gyrocal_evaluation::Statistic;
-use gyrocal_statistics::Proportion;
 use gyrocal_testkit::python_with;
 use serde::{Deserialize, Serialize};
 
@@ -76,21 +75,18 @@ pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
     let plants = plants()?;
     let all = context.records(&population(&plants)?)?;
     let effects = &Kind::Quadrotor.facts().effects[..EFFECTS];
-    let own = all
-        .records
-        .iter()
-        .filter(|one| one.plant == Kind::Quadrotor as usize);
-    let own = own.map(|one| &one.found).filter(|one| {
+    let is_compared = |one: &&Hidden| {
         one.strength >= DETECTABLE && effects.iter().any(|(id, _)| *id == one.effect)
-    });
+    };
+    let own = all.records.iter();
+    let own = own.filter(|one| one.plant == Kind::Quadrotor as usize);
+    let own = own.map(|one| &one.found).filter(is_compared);
     let own: Vec<&Hidden> = own.take(RECORDS).collect();
     let mut ours = Vec::new();
     for one in &own {
         let [record, later] = ["record", "later"].map(|name| format!("{name}-{}.csv", one.seed));
-        for (setting, name) in settings(Kind::Quadrotor, one.seed)
-            .iter()
-            .zip([&record, &later])
-        {
+        let settings = settings(Kind::Quadrotor, one.seed);
+        for (setting, name) in settings.iter().zip([&record, &later]) {
             std::fs::write(place(name), simulate(setting, None).csv(&INPUTS, &OUTPUTS))?;
         }
         ours.push(Ours {
@@ -122,10 +118,8 @@ pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
             figure
         })
     });
-    Ok(beside
-        .chain(noted)
-        .map(|figure| figure.over(own.len(), all.seeds.as_str()))
-        .collect())
+    let over = |figure: Figure| figure.over(own.len(), all.seeds.as_str());
+    Ok(beside.chain(noted).map(over).collect())
 }
 
 /// What one method reached over all records; the first four are compared. A record that a method says nothing of
@@ -143,53 +137,40 @@ fn reached(
     let said = said.iter().map(|of| of.get(method).unwrap_or(&nothing));
     let pairs: Vec<(&Hidden, &Said)> = own.iter().copied().zip(said).collect();
     let of = |number: fn(&(&Hidden, &Said)) -> f64| pairs.iter().map(number).collect();
-    let first = pairs
-        .iter()
-        .map(|(own, said)| said.names.first() == Some(&own.effect));
-    let within = pairs.iter().map(|(own, said)| {
+    let share =
+        |is: &dyn Fn(&(&Hidden, &Said)) -> bool| Statistic::share(&pairs, |one| Some(is(one)));
+    let first = share(&|(own, said)| said.names.first() == Some(&own.effect));
+    let within = share(&|(own, said)| {
         // The set that holds the effect, or the first one.
         let holding = own.sets.iter().find(|set| set.contains(&own.effect));
         let set = holding.or(own.sets.first());
-        let count = set.map_or(1, Vec::len);
         let names = if method == OWN {
             set
         } else {
             Some(&said.names)
         };
-        names.is_some_and(|names| names.iter().take(count).any(|name| *name == own.effect))
+        let mut names = names.into_iter().flatten().take(set.map_or(1, Vec::len));
+        names.any(|name| *name == own.effect)
     });
-    let diverged = pairs
-        .iter()
-        .filter(|(_, said)| said.error >= DIVERGED)
-        .count();
-    [
-        (
-            "hidden effect is the first name",
-            Statistic::Share(Proportion::of(first)),
-        ),
-        (
-            "hidden effect within a set of equal size",
-            Statistic::Share(Proportion::of(within)),
-        ),
-        (
-            "mean number of false terms",
-            Statistic::Mean(of(|(own, said)| {
-                said.names
-                    .iter()
-                    .filter(|name| **name != own.effect)
-                    .count() as f64
-            })),
-        ),
-        (
-            "median error on a second record, sigma of the sensors",
-            Statistic::Median(of(|(_, said)| said.error)),
-        ),
-        (
-            "records whose model leaves the second one altogether",
-            Statistic::Value(diverged as f64, pairs.len() as u64),
-        ),
-        (TIME, Statistic::Median(of(|(_, said)| said.seconds))),
-    ]
+    let false_terms = of(|(own, said)| {
+        let terms = said.names.iter().filter(|name| **name != own.effect);
+        terms.count() as f64
+    });
+    let error = of(|(_, said)| said.error);
+    let diverged = pairs.iter().filter(|(_, said)| said.error >= DIVERGED);
+    let diverged = Statistic::Value(diverged.count() as f64, pairs.len() as u64);
+    let (false_terms, error) = (Statistic::Mean(false_terms), Statistic::Median(error));
+    let seconds = Statistic::Median(of(|(_, said)| said.seconds));
+    #[rustfmt::skip] // a table
+    let all = [
+        ("hidden effect is the first name", first),
+        ("hidden effect within a set of equal size", within),
+        ("mean number of false terms", false_terms),
+        ("median error on a second record, sigma of the sensors", error),
+        ("records whose model leaves the second one altogether", diverged),
+        (TIME, seconds),
+    ];
+    all
 }
 
 /// Ours against a peer: not worse in any, better in one or more.
@@ -205,29 +186,18 @@ fn beside(
         ("false terms", -1.0),
         ("error", -1.0),
     ];
-    let values = ours
-        .iter()
-        .zip(theirs)
-        .map(|((_, one), (_, other))| one.value() - other.value());
-    let advantages: Vec<(&str, f64)> = compared
-        .into_iter()
-        .zip(values)
-        .map(|((name, sign), value)| (name, sign * value))
-        .collect();
     let figure = |what: &str, target: &str, is: fn(f64) -> bool, wanted: bool| {
-        let names = advantages.iter().filter(|(_, by)| is(*by));
-        let names: Vec<&str> = names.map(|(name, _)| *name).collect();
-        Figure {
-            target: target.to_owned(),
-            measured: match names.is_empty() {
-                true => "none".to_owned(),
-                false => names.join(", "),
-            },
-            ..Figure::truth(
-                &format!("plant peers: {what} than {peer}"),
-                names.is_empty() != wanted,
-            )
-        }
+        let all = compared.iter().zip(ours.iter().zip(theirs));
+        let names = all
+            .filter(|((_, sign), ((_, one), (_, other)))| is(sign * (one.value() - other.value())));
+        let names: Vec<&str> = names.map(|((name, _), _)| *name).collect();
+        let (name, none) = (format!("plant peers: {what} than {peer}"), names.is_empty());
+        let measured = if none {
+            "none".to_owned()
+        } else {
+            names.join(", ")
+        };
+        Figure::told(&name, target, measured, none != wanted)
     };
     [
         figure("worse", "none", |by| by < 0.0, false),

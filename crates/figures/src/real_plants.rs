@@ -47,9 +47,8 @@ pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
     for measured in &ALL {
         figures.extend(of_plant(measured, &mut values)?);
     }
-    let text = page::fill(TEMPLATE, &values)?;
-    let path = page::docs().join("real-plants.md");
-    let same = page::renewed(&path, &text, "plants --part real", context.write)?;
+    let topic = "plants --part real";
+    let same = page::filled("real-plants.md", TEMPLATE, &values, topic, context.write)?;
     let name = "docs/real-plants.md is what is measured";
     figures.push(Figure::truth(name, same));
     Ok(figures)
@@ -72,34 +71,26 @@ fn of_plant(measured: &Measured, values: &mut Values) -> Result<Vec<Figure>, Err
     let is_held = |id: &&str| answer.findings.iter().any(|one| holds(one, id));
     let of_time = named.iter().filter(|id| is_of_time(&plant, id)).count();
     let (nominal, extended, unit) = later_errors(&answer);
+    let row = |what: &str| format!("{name}: {what}");
+    let [before, after] = [nominal, extended].map(|error| format!("{error:.4} {unit}"));
+    let (least, is_small) = (
+        format!("<= {} {unit}", measured.least),
+        extended <= measured.least,
+    );
+    let better = row("later record simulated better with what was found");
+    let of_nominal = row("error on the later record, nominal model");
+    let of_extended = row("error on the later record, with what was found");
+    let (asked, all) = (
+        format!("sets hold {}", measured.held.join(", ")),
+        named.join(", "),
+    );
+    let are_held = measured.held.iter().all(is_held);
     Ok(vec![
-        Figure {
-            target: format!("sets hold {}", measured.held.join(", ")),
-            measured: named.join(", "),
-            ..Figure::truth(&format!("{name}: named"), measured.held.iter().all(is_held))
-        },
-        Figure::at_most(
-            &format!("{name}: functions of time named"),
-            0.0,
-            of_time as f64,
-            "",
-        ),
-        Figure::truth(
-            &format!("{name}: later record simulated better with what was found"),
-            extended < nominal,
-        ),
-        Figure::note(
-            &format!("{name}: error on the later record, nominal model"),
-            format!("{nominal:.4} {unit}"),
-        ),
-        Figure {
-            target: format!("<= {} {unit}", measured.least),
-            measured: format!("{extended:.4} {unit}"),
-            ..Figure::truth(
-                &format!("{name}: error on the later record, with what was found"),
-                extended <= measured.least,
-            )
-        },
+        Figure::told(&row("named"), &asked, all, are_held),
+        Figure::at_most(&row("functions of time named"), 0.0, of_time as f64, ""),
+        Figure::truth(&better, extended < nominal),
+        Figure::note(&of_nominal, before),
+        Figure::told(&of_extended, &least, after, is_small),
     ])
 }
 

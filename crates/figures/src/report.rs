@@ -98,22 +98,14 @@ fn looked_at(
     browser.open(page);
     let bottom = "document.querySelector('.first-screen').getBoundingClientRect().bottom";
     let height = f64::from(WINDOW[1]);
+    let (paint_s, end_px) = (browser.first_paint_s(), browser.number(bottom));
+    let [errors, requests] = [browser.console_errors(), browser.requests()];
     Ok(vec![
         size,
-        most("time to first paint", PAINT_S, browser.first_paint_s(), "s"),
-        most(
-            "console errors",
-            0.0,
-            browser.console_errors().len() as f64,
-            "",
-        ),
-        most("requests", 0.0, browser.requests().len() as f64, ""),
-        most(
-            "end of the first screen",
-            height,
-            browser.number(bottom),
-            "px",
-        ),
+        most("time to first paint", PAINT_S, paint_s, "s"),
+        most("console errors", 0.0, errors.len() as f64, ""),
+        most("requests", 0.0, requests.len() as f64, ""),
+        most("end of the first screen", height, end_px, "px"),
     ])
 }
 
@@ -125,12 +117,9 @@ fn long(rows: u64, folder: &Path) -> Result<(), Error> {
     let text = text.replace("duration_s = 259200.0", &duration);
     let text = text.replace("interval_s = 60.0", "interval_s = 1.0");
     std::fs::write(folder.join("scenario.toml"), text)?;
-    ran(
-        "simulate %scenario.toml --out %record.csv --bench-out %bench.toml",
-        folder,
-    )?;
-    ran(
-        "calibrate %record.csv --bench %bench.toml --report %page.html",
-        folder,
-    )
+    let simulate = "simulate %scenario.toml --out %record.csv --bench-out %bench.toml";
+    let calibrate = "calibrate %record.csv --bench %bench.toml --report %page.html";
+    [simulate, calibrate]
+        .iter()
+        .try_for_each(|line| ran(line, folder))
 }

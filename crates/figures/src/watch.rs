@@ -15,7 +15,7 @@ mod sound;
 
 use gyrocal::watch::EFFECTS_BY_DEFAULT;
 
-use crate::harness::{Context, Error, Figure, Population, Sources, of};
+use crate::harness::{Context, Error, Figure, Population, Sources, in_turn, of};
 
 /// Sizes of the watch and of its filter.
 const STATES: usize = gyrocal::Platform::STATES;
@@ -43,10 +43,10 @@ const SOURCES: Sources = of(
 
 /// All figures of the part.
 pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
-    let mut figures = sound::figures(context)?;
-    figures.extend(delays::figures(context)?);
-    figures.extend(nonlinear::figures(context)?);
-    Ok(figures)
+    in_turn(
+        context,
+        &[sound::figures, delays::figures, nonlinear::figures],
+    )
 }
 
 /// Platforms of the usual population, by their numbers.

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::error::{InstrumentError, Unfit};
 use crate::file_format::FileFormat;
 
+mod names;
 pub mod table;
 pub mod temperature;
 pub mod time;
@@ -274,4 +275,76 @@ pub(crate) fn no_accelerometers() -> InstrumentError {
 
 fn straight() -> [Direction; 3] {
     [Direction::X, Direction::Y, Direction::Z]
+}
+
+#[cfg(test)]
+mod tests {
+    use serde::Deserialize;
+    use serde::de::IntoDeserializer;
+    use serde::de::value::{Error, StrDeserializer};
+
+    use super::names::Named;
+    use super::temperature::TemperatureUnit;
+    use super::{AccelUnit, GyroUnit, TableUnit, TimeUnit};
+
+    fn read<'de, T: Deserialize<'de>>(text: &'de str) -> Result<T, Error> {
+        let text: StrDeserializer<'de, Error> = text.into_deserializer();
+        T::deserialize(text)
+    }
+
+    #[test]
+    fn rates_of_tables_have_the_names_of_those_of_gyros() {
+        for (unit, names) in GyroUnit::NAMES {
+            for name in *names {
+                assert_eq!(read::<GyroUnit>(name).unwrap(), *unit);
+                assert_eq!(read::<TableUnit>(name).is_ok(), *unit != GyroUnit::Counts);
+            }
+        }
+        let refused = read::<TableUnit>("rpm").unwrap_err().to_string();
+        assert!(
+            refused.contains("`rpm`") && refused.contains("`deg/h`"),
+            "{refused}"
+        );
+    }
+
+    /// Names of all units that are read.
+    fn names<T: Named>() -> Vec<&'static str> {
+        T::NAMES
+            .iter()
+            .flat_map(|(_, names)| names.iter().copied())
+            .collect()
+    }
+
+    #[test]
+    fn no_name_stands_for_two_units() {
+        let of_all = [
+            names::<GyroUnit>(),
+            names::<AccelUnit>(),
+            names::<TableUnit>(),
+            names::<TemperatureUnit>(),
+            names::<TimeUnit>(),
+        ];
+        for mut names in of_all {
+            let count = names.len();
+            names.sort_unstable();
+            names.dedup();
+            assert_eq!(names.len(), count, "{names:?}");
+        }
+    }
+
+    #[cfg(feature = "schema")]
+    #[test]
+    fn the_schema_has_every_name_that_is_read() {
+        let schema = serde_json::to_string(&super::Description::schema()).unwrap();
+        let of_all = [
+            names::<GyroUnit>(),
+            names::<AccelUnit>(),
+            names::<TableUnit>(),
+            names::<TemperatureUnit>(),
+            names::<TimeUnit>(),
+        ];
+        for name in of_all.concat() {
+            assert!(schema.contains(&format!("\"{name}\"")), "{name}");
+        }
+    }
 }

@@ -23,7 +23,7 @@ use self::slower::fill_slower;
 use self::stamps::refuse_backwards;
 use self::stuck::refuse_stuck;
 
-pub(crate) use stuck::refuse_still;
+pub(crate) use stuck::{refuse_still, refuse_still_at_stops};
 pub use wild::BadSamples;
 pub(crate) use wild::of_logs;
 

@@ -7,6 +7,7 @@
 //! log estimated together with the law. Biases may be of any size. What a mean over a whole log tells is known
 //! better, since slow noise is part of it: [`LogRates`].
 
+mod between_logs;
 mod blocks;
 mod fast_noise;
 mod heading;
@@ -131,7 +132,7 @@ pub fn evaluate_rates(
         gyros: laws
             .iter()
             .enumerate()
-            .map(|(gyro, law)| report(gyro, law, range_k))
+            .map(|(gyro, law)| report(gyro, law, range_k, blocks.len()))
             .collect(),
         earth_vertical_deg_per_h: earth.map(|[_, vertical]| vertical),
         earth_horizontal_deg_per_h: earth.map(|[horizontal, _]| horizontal),
@@ -153,7 +154,7 @@ fn outputs(logs: &[Blocks], gyro: usize, vertical: f64) -> DVector<f64> {
     DVector::from_vec(values)
 }
 
-fn report(gyro: usize, law: &Law, range_k: f64) -> GyroRates {
+fn report(gyro: usize, law: &Law, range_k: f64, logs: usize) -> GyroRates {
     let fit = &law.fit;
     let name = |term: &RateTerm| term.name(gyro);
     let coefficients = law
@@ -207,6 +208,7 @@ fn report(gyro: usize, law: &Law, range_k: f64) -> GyroRates {
             rate_random_walk,
             between_logs,
         },
+        assumes_equal_bias: logs > 1 && law.free_differences == 0,
     }
 }
 

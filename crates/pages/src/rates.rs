@@ -88,6 +88,7 @@ fn of_gyro(gyro: &GyroRates, logs: usize) -> Section {
     }
     let noise = &gyro.noise;
     let between = match logs > 1 {
+        true if gyro.assumes_equal_bias => ", bias taken as equal in all logs".to_owned(),
         true => format!(", bias from log to log {:.3e} deg/h", noise.between_logs),
         false => String::new(),
     };

@@ -117,28 +117,12 @@ impl Bench {
         document.interpret(&KNOWN, |root| {
             let keys = [&Site::KEYS[..], &SiteUncertainty::KEYS].concat();
             let site_table = root.table(Site::TABLE, &keys)?;
-            let platform = root.table(
-                "platform",
-                &["initial_angles_deg", "initial_angles_sigma_deg"],
-            )?;
+            let platform = root.optional_table("platform", &PLATFORM_KEYS)?;
             let noise = WhiteNoise::from_root(root)?;
             let site = Site::from_table(&site_table)?;
-            // Angles and their sigmas are given together, or the attitude is not known.
-            let initial_angles_deg =
-                platform.optional_three_numbers("initial_angles_deg", Bound::ANGLE_DEG)?;
-            let initial_angles_sigma_deg = match initial_angles_deg {
-                Some(_) => platform.three_numbers("initial_angles_sigma_deg", Bound::Positive)?,
-                None => platform
-                    .optional_three_numbers("initial_angles_sigma_deg", Bound::Positive)?
-                    .map_or(Ok(UNKNOWN_ANGLES_SIGMA_DEG), |_| {
-                        Err(platform.error_at(
-                            "initial_angles_deg",
-                            InputErrorKind::MissingKey,
-                            "angles and their sigmas are given together or not at all",
-                            "",
-                        ))
-                    })?,
-            };
+            let initial_angles = platform.as_ref().map(initial_angles).transpose()?;
+            let (initial_angles_deg, initial_angles_sigma_deg) =
+                initial_angles.unwrap_or((None, UNKNOWN_ANGLES_SIGMA_DEG));
             Ok(Self {
                 identification: root.facts(IDENTIFICATION)?,
                 latitude_deg: site.latitude_deg,
@@ -199,6 +183,26 @@ impl Bench {
     }
 }
 
+/// Angles and their sigmas are given together, or the attitude is not known.
+fn initial_angles(platform: &Table<'_>) -> Result<(Option<[f64; 3]>, [f64; 3]), Error> {
+    let [angles, sigmas] = PLATFORM_KEYS;
+    let angles_deg = platform.optional_three_numbers(angles, Bound::ANGLE_DEG)?;
+    let sigma_deg = match angles_deg {
+        Some(_) => platform.three_numbers(sigmas, Bound::Positive)?,
+        None => platform
+            .optional_three_numbers(sigmas, Bound::Positive)?
+            .map_or(Ok(UNKNOWN_ANGLES_SIGMA_DEG), |_| {
+                Err(platform.error_at(
+                    angles,
+                    InputErrorKind::MissingKey,
+                    "angles and their sigmas are given together or not at all",
+                    "",
+                ))
+            })?,
+    };
+    Ok((angles_deg, sigma_deg))
+}
+
 /// Tables of a bench file.
 const KNOWN: [&str; 6] = [
     "site",
@@ -214,6 +218,8 @@ const IDENTIFICATION: &str = "identification";
 
 /// Value of [`Bench::initial_angles_sigma_deg`] for unknown angles.
 const UNKNOWN_ANGLES_SIGMA_DEG: [f64; 3] = [180.0; 3];
+
+const PLATFORM_KEYS: [&str; 2] = ["initial_angles_deg", "initial_angles_sigma_deg"];
 
 const PRIOR_KEYS: [&str; 4] = [
     "bias_sigma_deg_per_h",

@@ -31,6 +31,17 @@ fn the_good_one_is_good() {
 }
 
 #[test]
+fn a_platform_without_keys_and_none_are_an_unknown_attitude() {
+    let angles =
+        "initial_angles_deg = [0.0, 0, 0.0]\ninitial_angles_sigma_deg = [0.01, 0.01, 0.01]\n";
+    let empty = GOOD.replace(angles, "");
+    let bench = Bench::parse(&empty, "b.toml").unwrap();
+    assert_eq!(bench.initial_angles_deg, None);
+    let none = empty.replace("[platform]\n", "");
+    assert_eq!(Bench::parse(&none, "b.toml").unwrap(), bench);
+}
+
+#[test]
 fn what_identifies_a_run_is_kept_as_it_is_written() {
     let text = format!(
         "{GOOD}[identification]\nunit = \"P-7\"\nserial_numbers = [\"A 1\", 0x2A]\nmass_kg = 7.50\n\

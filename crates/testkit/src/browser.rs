@@ -16,6 +16,10 @@ use crate::{Tool, tool};
 /// Longest time that a browser may take to answer.
 const PATIENCE: Duration = Duration::from_secs(60);
 
+const OPTIONS: &str = "--headless --remote-debugging-pipe --no-sandbox --disable-gpu --disable-dev-shm-usage \
+    --no-first-run --disable-background-networking --disable-component-update --disable-sync --hide-scrollbars \
+    --force-device-scale-factor=1";
+
 /// Printable width and height of A4 with the margins of a page, px: 186 by 271 mm.
 pub const A4_PX: [f64; 2] = [186.0 / 25.4 * 96.0, 271.0 / 25.4 * 96.0];
 
@@ -41,19 +45,7 @@ impl Browser {
         let mut child = Command::new("sh")
             .args(["-c", "exec \"$0\" \"$@\" 3<&0 4>&1 1>/dev/null 2>/dev/null"])
             .arg(program)
-            .args([
-                "--headless",
-                "--remote-debugging-pipe",
-                "--no-sandbox",
-                "--disable-gpu",
-                "--disable-dev-shm-usage",
-                "--no-first-run",
-                "--disable-background-networking",
-                "--disable-component-update",
-                "--disable-sync",
-                "--hide-scrollbars",
-                "--force-device-scale-factor=1",
-            ])
+            .args(OPTIONS.split_whitespace())
             .arg(format!("--user-data-dir={}", profile.path().display()))
             .arg(format!("--window-size={},{}", size[0], size[1]))
             .arg("about:blank")
@@ -64,14 +56,9 @@ impl Browser {
         let (sender, messages) = channel();
         let answers = BufReader::new(child.stdout.take().unwrap());
         std::thread::spawn(move || {
-            for message in answers.split(0).map_while(Result::ok) {
-                let Ok(message) = serde_json::from_slice(&message) else {
-                    continue;
-                };
-                if sender.send(message).is_err() {
-                    break;
-                }
-            }
+            let messages = answers.split(0).map_while(Result::ok);
+            let mut parsed = messages.filter_map(|message| serde_json::from_slice(&message).ok());
+            parsed.try_for_each(|message| sender.send(message))
         });
         let mut browser = Self {
             commands: child.stdin.take().unwrap(),
@@ -88,10 +75,8 @@ impl Browser {
 
     fn attach(&mut self, size: [u32; 2]) {
         let target = self.call("Target.createTarget", json!({ "url": "about:blank" }));
-        let attached = self.call(
-            "Target.attachToTarget",
-            json!({ "targetId": target["targetId"], "flatten": true }),
-        );
+        let target = json!({ "targetId": target["targetId"], "flatten": true });
+        let attached = self.call("Target.attachToTarget", target);
         self.session = attached["sessionId"].as_str().map(str::to_owned);
         for domain in ["Page", "Runtime", "Log", "Network"] {
             self.call(&format!("{domain}.enable"), json!({}));
@@ -107,9 +92,7 @@ impl Browser {
         if let Some(session) = &self.session {
             message["sessionId"] = json!(session);
         }
-        let mut bytes = message.to_string().into_bytes();
-        bytes.push(0);
-        self.commands.write_all(&bytes).unwrap();
+        write!(self.commands, "{message}\0").unwrap();
         self.commands.flush().unwrap();
         loop {
             let message = self.next(method);
@@ -145,21 +128,16 @@ impl Browser {
     /// Chooses the dark theme or the light one.
     pub fn set_dark(&mut self, dark: bool) {
         let value = if dark { "dark" } else { "light" };
-        let features = json!([{ "name": "prefers-color-scheme", "value": value }]);
-        self.call(
-            "Emulation.setEmulatedMedia",
-            json!({ "features": features }),
-        );
+        let scheme = json!({ "features": [{ "name": "prefers-color-scheme", "value": value }] });
+        self.call("Emulation.setEmulatedMedia", scheme);
     }
 
     /// Opens a file and waits until it is loaded and has been painted.
     pub fn open(&mut self, file: &Path) {
         self.events.clear();
         let path = file.canonicalize().unwrap();
-        self.call(
-            "Page.navigate",
-            json!({ "url": format!("file://{}", path.display()) }),
-        );
+        let url = format!("file://{}", path.display());
+        self.call("Page.navigate", json!({ "url": url }));
         self.wait_for("Page.loadEventFired");
         self.evaluate(
             "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(0))))",
@@ -168,10 +146,9 @@ impl Browser {
 
     /// Value of a JavaScript expression; a promise is awaited.
     pub fn evaluate(&mut self, expression: &str) -> Value {
-        let result = self.call(
-            "Runtime.evaluate",
-            json!({ "expression": expression, "returnByValue": true, "awaitPromise": true }),
-        );
+        let asked =
+            json!({ "expression": expression, "returnByValue": true, "awaitPromise": true });
+        let result = self.call("Runtime.evaluate", asked);
         let thrown = &result["exceptionDetails"];
         assert!(thrown.is_null(), "{expression}: {thrown}");
         result["result"]["value"].clone()
@@ -257,19 +234,14 @@ impl Browser {
 }
 
 fn decoded(data: &Value) -> Vec<u8> {
-    let text = data.as_str().unwrap();
-    base64::engine::general_purpose::STANDARD
-        .decode(text)
-        .unwrap()
+    let decoder = base64::engine::general_purpose::STANDARD;
+    decoder.decode(data.as_str().unwrap()).unwrap()
 }
 
 impl Drop for Browser {
     fn drop(&mut self) {
-        let mut message = json!({ "id": 0, "method": "Browser.close" })
-            .to_string()
-            .into_bytes();
-        message.push(0);
-        let _ = self.commands.write_all(&message);
+        let close = json!({ "id": 0, "method": "Browser.close" });
+        let _ = write!(self.commands, "{close}\0");
         let start = Instant::now();
         while start.elapsed() < Duration::from_secs(5) {
             if matches!(self.child.try_wait(), Ok(Some(_))) {

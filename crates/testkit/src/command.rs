@@ -1,4 +1,3 @@
-use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::OnceLock;
@@ -23,11 +22,13 @@ impl Outcome {
     /// Panics with the output unless the command succeeded.
     #[track_caller]
     pub fn succeeded(self) -> Self {
-        assert!(
-            self.success,
-            "exit code {:?}\n{}\n{}",
-            self.code, self.stdout, self.stderr
-        );
+        let Self {
+            code,
+            stdout,
+            stderr,
+            ..
+        } = &self;
+        assert!(self.success, "exit code {code:?}\n{stdout}\n{stderr}");
         self
     }
 
@@ -35,30 +36,28 @@ impl Outcome {
     /// `parts` and is no backtrace.
     #[track_caller]
     pub fn failed_with(self, parts: &[&str]) -> Self {
-        assert!(!self.success, "succeeded\n{}\n{}", self.stdout, self.stderr);
+        let stderr = &self.stderr;
+        assert!(!self.success, "succeeded\n{}\n{stderr}", self.stdout);
         for part in parts {
-            assert!(
-                self.stderr.contains(part),
-                "no `{part}` in\n{}",
-                self.stderr
-            );
+            assert!(stderr.contains(part), "no `{part}` in\n{stderr}");
         }
-        assert!(!self.stderr.contains("panicked at"), "{}", self.stderr);
-        assert!(!self.stderr.contains("RUST_BACKTRACE"), "{}", self.stderr);
+        for part in ["panicked at", "RUST_BACKTRACE"] {
+            assert!(!stderr.contains(part), "{stderr}");
+        }
         self
     }
 }
 
 /// Runs a command to its end.
 pub fn run(command: &mut Command) -> Outcome {
-    let output = command
-        .output()
-        .unwrap_or_else(|error| panic!("{command:?}: {error}"));
+    let output = command.output();
+    let output = output.unwrap_or_else(|error| panic!("{command:?}: {error}"));
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
     Outcome {
         success: output.status.success(),
         code: output.status.code(),
-        stdout: String::from_utf8_lossy(&output.stdout).into_owned(),
-        stderr: String::from_utf8_lossy(&output.stderr).into_owned(),
+        stdout: text(&output.stdout),
+        stderr: text(&output.stderr),
     }
 }
 
@@ -80,16 +79,8 @@ pub fn codegen(directory: &Path, arguments: &[&str]) -> Command {
     static BUILT: OnceLock<PathBuf> = OnceLock::new();
     let program = BUILT.get_or_init(|| {
         let target = target_directory();
-        let mut build = cargo(&workspace(), &target);
-        build.args([
-            "build",
-            "--offline",
-            "--package",
-            "gyrocal-codegen",
-            "--features",
-            "cli",
-        ]);
-        run(&mut build).succeeded();
+        let build = "build --offline --package gyrocal-codegen --features cli";
+        run(cargo(&workspace(), &target).args(build.split(' '))).succeeded();
         target.join("debug/gyrocal-codegen")
     });
     let mut command = Command::new(program);
@@ -153,21 +144,16 @@ pub fn system_python() -> PathBuf {
 /// The target directory that this test program was built in.
 fn target_directory() -> PathBuf {
     let program = std::env::current_exe().unwrap();
-    let marked = program
-        .ancestors()
-        .filter(|path| path.join("CACHEDIR.TAG").is_file());
+    let folders = program.ancestors();
+    let marked = folders.filter(|path| path.join("CACHEDIR.TAG").is_file());
     marked.last().expect("a target directory").to_owned()
 }
 
 /// Removes variables of the caller that would change the command.
 fn without_settings(command: &mut Command) {
-    for name in [
-        "GYROCAL_PYTHON",
-        "GYROCAL_OFFLINE",
-        "CARGO_NET_OFFLINE",
-        "RUST_BACKTRACE",
-    ] {
-        command.env_remove(OsStr::new(name));
+    let names = "GYROCAL_PYTHON GYROCAL_OFFLINE CARGO_NET_OFFLINE RUST_BACKTRACE";
+    for name in names.split(' ') {
+        command.env_remove(name);
     }
     // Cargo describes the tested package to its tests; the next cargo must not see that.
     for (name, _) in std::env::vars_os() {

@@ -57,23 +57,16 @@ pub fn check_contracts(
     run: impl Fn(&[String]) -> Result<(), String>,
 ) -> Vec<ContractOutcome> {
     let folder = tempfile::tempdir().unwrap();
-    let listed = CONTRACTS
-        .iter()
-        .filter(|(own, ..)| commands.iter().any(|command| command == own));
-    let mut outcomes: Vec<ContractOutcome> = listed
-        .map(|(command, _, rest)| ContractOutcome {
-            command: (*command).to_owned(),
-            fault: fault(command, rest, folder.path(), &run),
-        })
-        .collect();
-    let unlisted = commands
-        .iter()
-        .filter(|command| schema_of(command).is_none());
-    outcomes.extend(unlisted.map(|command| ContractOutcome {
-        command: command.clone(),
-        fault: "no schema".to_owned(),
-    }));
-    outcomes
+    let outcome = |command: &str, fault| ContractOutcome {
+        command: command.to_owned(),
+        fault,
+    };
+    let listed = CONTRACTS.iter();
+    let listed = listed.filter(|(own, ..)| commands.iter().any(|command| command == own));
+    let listed = listed.map(|(own, _, rest)| outcome(own, fault(own, rest, folder.path(), &run)));
+    let unlisted = commands.iter().filter(|own| schema_of(own).is_none());
+    let unlisted = unlisted.map(|own| outcome(own, "no schema".to_owned()));
+    listed.chain(unlisted).collect()
 }
 
 /// The schema of the result of a command, by its words, as a path in the repository.
@@ -88,11 +81,9 @@ pub fn violations(schema: &str, result: &str) -> String {
     let schema: Value = serde_json::from_str(&schema).unwrap();
     let validator: Validator = jsonschema::validator_for(&schema).unwrap();
     let result: Value = serde_json::from_str(result).unwrap();
-    let errors: Vec<String> = validator
-        .iter_errors(&result)
-        .map(|error| format!("{}: {error}", error.instance_path()))
-        .collect();
-    errors.join("\n")
+    let errors = validator.iter_errors(&result);
+    let errors = errors.map(|error| format!("{}: {error}", error.instance_path()));
+    errors.collect::<Vec<_>>().join("\n")
 }
 
 /// The words of a line of arguments. `@` begins a path in the repository, `%` one in a folder.

@@ -7,10 +7,8 @@ use crate::files::edit;
 
 /// The workspace that these tests belong to.
 pub fn workspace() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../..")
-        .canonicalize()
-        .unwrap()
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    root.canonicalize().unwrap()
 }
 
 /// A copy of the workspace as version control would hold it.

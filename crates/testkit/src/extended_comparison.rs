@@ -70,11 +70,8 @@ fn catalogue_filter(
     let nominal = nominal.zip(settings.drift_sigma.to_array());
     let mut chart = Chart::for_model(settings.site);
     let angles = attitude.place(&mut chart);
-    let known = angles
-        .angles_rad
-        .into_iter()
-        .zip(angles.sigma_rad)
-        .chain(nominal);
+    let angles = angles.angles_rad.into_iter().zip(angles.sigma_rad);
+    let known = angles.chain(nominal);
     let effects = START.iter().map(|start| (start.value, start.sigma));
     for (place, (value, deviation)) in places.into_iter().zip(known.chain(effects)) {
         (state[place], sigma[place]) = (value, deviation);
@@ -99,8 +96,8 @@ fn differences(extended: &Controller<f64>, catalogue: &CatalogueFilter) -> [f64;
     let mut largest = [0.0_f64; 2];
     for (state, place) in places.into_iter().enumerate() {
         let sigma = extended.sigma(state);
-        let difference = (extended.state()[state] - catalogue.state()[place]).abs() / sigma;
-        largest[0] = largest[0].max(difference);
+        let difference = extended.state()[state] - catalogue.state()[place];
+        largest[0] = largest[0].max(difference.abs() / sigma);
         largest[1] = largest[1].max((catalogue.sigma(place) / sigma - 1.0).abs());
     }
     let smallest = (0..3).map(|angle| extended.sigma(angle));

@@ -24,15 +24,13 @@ pub type ExtendedFilter = Filter<f64, ExtendedPlatform, Chart<f64>, VecStorage<f
 
 /// Noise-free samples of a platform without drift.
 pub fn samples(count: usize) -> Result<Vec<[f64; 3]>, gyrocal::EstimationError> {
-    let site = Site::at_latitude_deg(LATITUDE_DEG);
-    let mut truth =
-        PlatformFilter::new(&FilterSettings::at_site(site), &InitialAttitude::aligned())?;
-    let mut samples = Vec::with_capacity(count);
-    for _ in 0..count {
+    let settings = FilterSettings::at_site(Site::at_latitude_deg(LATITUDE_DEG));
+    let mut truth = PlatformFilter::new(&settings, &InitialAttitude::aligned())?;
+    let sample = |_| {
         truth.predict(STEP_S)?;
-        samples.push(truth.platform_c_enu().map(|row| row[2]));
-    }
-    Ok(samples)
+        Ok(truth.platform_c_enu().map(|row| row[2]))
+    };
+    (0..count).map(sample).collect()
 }
 
 /// A filter with `states` states, at least 12, at the start of the samples.

@@ -30,10 +30,9 @@ impl Along {
     fn at(moving: &[f64; 3], parameters: &[f64], chart: &Chart<f64>, origin: bool) -> Self {
         let mut d_theta = [[0.0; 3]; 3];
         let nominal = &parameters[..NOMINAL];
-        let a = if origin {
-            INNER.output_jacobian_at_origin(nominal, chart, &mut d_theta, &mut [])
-        } else {
-            INNER.output_jacobian(moving, nominal, chart, &mut d_theta, &mut [])
+        let a = match origin {
+            true => INNER.output_jacobian_at_origin(nominal, chart, &mut d_theta, &mut []),
+            false => INNER.output_jacobian(moving, nominal, chart, &mut d_theta, &mut []),
         };
         let along = |column: [f64; 3]| (0..3).map(|i| DIRECTION[i] * column[i]).sum();
         Self {
@@ -91,10 +90,9 @@ impl ExtendedPlatform {
             noise: jacobian.noise,
             parameters: &mut columns,
         };
-        let rates = if origin {
-            INNER.rates_jacobian_at_origin(&nominal, chart, &mut inner)
-        } else {
-            INNER.rates_jacobian(moving, &nominal, chart, &mut inner)
+        let rates = match origin {
+            true => INNER.rates_jacobian_at_origin(&nominal, chart, &mut inner),
+            false => INNER.rates_jacobian(moving, &nominal, chart, &mut inner),
         };
         (jacobian.moving, jacobian.noise) = (inner.moving, inner.noise);
         for i in 0..3 {
@@ -169,13 +167,8 @@ impl Model<f64, 3, 3> for ExtendedPlatform {
         d_moving: &mut [[f64; 3]; 3],
         d_parameters: &mut [f64],
     ) -> [f64; 3] {
-        INNER.output_jacobian(
-            moving,
-            &parameters[..NOMINAL],
-            chart,
-            d_moving,
-            d_parameters,
-        )
+        let nominal = &parameters[..NOMINAL];
+        INNER.output_jacobian(moving, nominal, chart, d_moving, d_parameters)
     }
 
     fn output_jacobian_at_origin(

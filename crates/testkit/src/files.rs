@@ -16,12 +16,8 @@ pub fn fresh_directory(directory: impl Into<PathBuf>) -> PathBuf {
 pub fn edit(path: impl AsRef<Path>, from: &str, to: &str) {
     let path = path.as_ref();
     let text = fs::read_to_string(path).unwrap();
-    assert_eq!(
-        text.matches(from).count(),
-        1,
-        "`{from}` in {}",
-        path.display()
-    );
+    let found = text.matches(from).count();
+    assert_eq!(found, 1, "`{from}` in {}", path.display());
     fs::write(path, text.replace(from, to)).unwrap();
 }
 

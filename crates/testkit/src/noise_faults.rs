@@ -52,12 +52,10 @@ pub fn faulty_record(
     let hide = |id: &str, parameters: &[(&str, f64)]| vec![Hidden::new(id, parameters).unwrap()];
     simulated.hidden.extend(match fault {
         Fault::Quantised(step) => quantised(step * sigma).unwrap().to_vec(),
-        Fault::Outliers(fraction, size) => {
-            hide("accel.outliers", &[("fraction", fraction), ("size", size)])
+        Fault::Outliers(share, size) => {
+            hide("accel.outliers", &[("fraction", share), ("size", size)])
         }
-        Fault::Coloured(correlation) => {
-            hide("accel.coloured_noise", &[("correlation", correlation)])
-        }
+        Fault::Coloured(value) => hide("accel.coloured_noise", &[("correlation", value)]),
         Fault::None | Fault::Ratio(_) | Fault::GyroRatio(_) => Vec::new(),
     });
     match fault {
@@ -95,9 +93,9 @@ fn innovations(record: &Record, bench: &Bench) -> Innovations {
             false => f64::NAN,
         });
         let vertical = filter.platform_c_enu().map(|row| row[2]);
-        innovations
-            .push(record.time_s[row], residual, &of.covariance(), vertical)
-            .unwrap();
+        let time_s = record.time_s[row];
+        let pushed = innovations.push(time_s, residual, &of.covariance(), vertical);
+        pushed.unwrap();
     };
     run_factorised_filter(record, &settings, &attitude, &mut push).unwrap();
     innovations

@@ -5,6 +5,8 @@ use adskalman::{
 };
 use gyrocal::Chart;
 use gyrocal::generated::platform::{euler_step_jacobian, specific_force_jacobian};
+use multicalc::estimation::{KalmanFilter, KalmanModel};
+use multicalc::linear_algebra::{Matrix, Vector};
 use nalgebra::{SMatrix, SVector};
 
 type State = SVector<f64, 12>;
@@ -144,9 +146,8 @@ impl Adskalman {
             noise: SMatrix::from_diagonal(&SVector::from(self.variance)),
         };
         let filter = KalmanFilterNoControl::new(&linearised, &observed);
-        self.estimate = filter
-            .step(&self.estimate, &SVector::from(*sample))
-            .unwrap();
+        let estimate = filter.step(&self.estimate, &SVector::from(*sample));
+        self.estimate = estimate.unwrap();
     }
 }
 
@@ -154,36 +155,29 @@ impl Adskalman {
 #[derive(Clone)]
 pub struct Multicalc {
     chart: Chart<f64>,
-    filter: multicalc::estimation::KalmanFilter<12, 3>,
+    filter: KalmanFilter<12, 3>,
     density: [f64; 3],
 }
 
-type MulticalcMatrix<const R: usize, const C: usize> = multicalc::linear_algebra::Matrix<R, C>;
-
-fn matrix<const R: usize, const C: usize>(from: &SMatrix<f64, R, C>) -> MulticalcMatrix<R, C> {
-    MulticalcMatrix::new(core::array::from_fn(|i| {
-        core::array::from_fn(|j| from[(i, j)])
-    }))
+fn matrix<const R: usize, const C: usize>(from: &SMatrix<f64, R, C>) -> Matrix<R, C> {
+    let row = |i: usize| core::array::from_fn(|j| from[(i, j)]);
+    Matrix::new(core::array::from_fn(row))
 }
 
 impl Multicalc {
     /// The filter at its start; `prior` and `variance` are variances, `density` the spectral density of
     /// the drift noise.
     pub fn new(chart: Chart<f64>, prior: [f64; 12], density: [f64; 3], variance: [f64; 3]) -> Self {
-        let model = multicalc::estimation::KalmanModel {
+        let model = KalmanModel {
             state_transition: matrix(&Square::identity()),
             measurement_model: matrix(&SMatrix::<f64, 3, 12>::zeros()),
             process_noise: matrix(&Square::zeros()),
             measurement_noise: matrix(&SMatrix::from_diagonal(&SVector::from(variance))),
         };
-        let filter = multicalc::estimation::KalmanFilter::new(
-            multicalc::linear_algebra::Vector::new([0.0; 12]),
-            matrix(&Square::from_diagonal(&SVector::from(prior))),
-            model,
-        );
+        let covariance = matrix(&Square::from_diagonal(&SVector::from(prior)));
         Self {
             chart,
-            filter,
+            filter: KalmanFilter::new(Vector::new([0.0; 12]), covariance, model),
             density,
         }
     }
@@ -196,15 +190,12 @@ impl Multicalc {
         self.filter.set_state_transition(matrix(&phi));
         self.filter.set_process_noise(matrix(&noise));
         self.filter.predict();
-        self.filter
-            .set_state(multicalc::linear_algebra::Vector::new(predicted.into()));
+        self.filter.set_state(Vector::new(predicted.into()));
         let (output, h) = measurement(&self.chart, &predicted);
         self.filter.set_measurement_model(matrix(&h));
         // The output of this filter is linear: it gets the measurement with the same innovation.
         let linear = h * predicted;
         let equivalent = core::array::from_fn(|i| sample[i] - output[i] + linear[i]);
-        self.filter
-            .update(multicalc::linear_algebra::Vector::new(equivalent))
-            .unwrap();
+        self.filter.update(Vector::new(equivalent)).unwrap();
     }
 }

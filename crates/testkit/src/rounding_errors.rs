@@ -51,33 +51,23 @@ pub fn structured<F: Form<f64>>(integration: Integration) -> Accuracy {
     let mut state = [0.0; 12];
     state[..3].copy_from_slice(&ANGLES_RAD);
     accuracy(integration, |run| {
-        let storage = ArrayStorage::<f64, 3, 3, 12>::new();
-        let (model, sigmas) = (Anchored(Platform), sigmas(run));
-        let recentring = Recentring::EveryStep;
-        let mut filter = Filter::<_, _, _, _, 3, 3, F>::with_form(
-            model,
+        let filter = Filter::<_, _, _, _, 3, 3, F>::with_form(
+            Anchored(Platform),
             chart(),
             integration,
-            recentring,
-            storage,
+            Recentring::EveryStep,
+            ArrayStorage::<f64, 3, 3, 12>::new(),
             &state,
-            &sigmas,
-        )
-        .expect("a valid start");
+            &sigmas(run),
+        );
+        let mut filter = filter.expect("a valid start");
         move |sample: &[f64; 3]| {
-            filter
-                .predict(STEP_S, &DRIFT_DENSITY)
-                .expect("a finite prediction");
-            filter
-                .update(sample, &ACCEL_VARIANCE)
-                .expect("a finite update");
-            Estimate {
-                platform_c_enu: attitude(filter.state(), filter.inputs()),
-                coefficients: core::array::from_fn(|i| filter.state()[3 + i]),
-                covariance: core::array::from_fn(|i| {
-                    core::array::from_fn(|j| filter.covariance(i, j))
-                }),
-            }
+            let predicted = filter.predict(STEP_S, &DRIFT_DENSITY);
+            predicted.expect("a finite prediction");
+            let updated = filter.update(sample, &ACCEL_VARIANCE);
+            updated.expect("a finite update");
+            let covariance = |i, j| filter.covariance(i, j);
+            Estimate::of(filter.state(), filter.inputs(), covariance)
         }
     })
 }
@@ -97,16 +87,10 @@ pub fn dense_joseph(integration: Integration) -> Accuracy {
         );
         move |sample: &[f64; 3]| {
             filter.predict(STEP_S, &DRIFT_DENSITY);
-            filter
-                .update(sample, &ACCEL_VARIANCE)
-                .expect("a positive definite innovation");
-            Estimate {
-                platform_c_enu: attitude(filter.state.as_slice(), &filter.inputs),
-                coefficients: core::array::from_fn(|i| filter.state[3 + i]),
-                covariance: core::array::from_fn(|i| {
-                    core::array::from_fn(|j| filter.covariance[(i, j)])
-                }),
-            }
+            let updated = filter.update(sample, &ACCEL_VARIANCE);
+            updated.expect("a positive definite innovation");
+            let covariance = |i, j| filter.covariance[(i, j)];
+            Estimate::of(filter.state.as_slice(), &filter.inputs, covariance)
         }
     })
 }
@@ -131,16 +115,25 @@ struct Estimate {
     covariance: [[f64; 12]; 12],
 }
 
+impl Estimate {
+    fn of(state: &[f64], chart: &Chart<f64>, covariance: impl Fn(usize, usize) -> f64) -> Self {
+        Self {
+            platform_c_enu: attitude(state, chart),
+            coefficients: core::array::from_fn(|i| state[3 + i]),
+            covariance: square(covariance),
+        }
+    }
+}
+
+fn square<const N: usize>(of: impl Fn(usize, usize) -> f64) -> [[f64; N]; N] {
+    core::array::from_fn(|i| core::array::from_fn(|j| of(i, j)))
+}
+
 fn attitude(state: &[f64], chart: &Chart<f64>) -> [[f64; 3]; 3] {
     let platform_c_chart = reanchor(&[state[0], state[1], state[2]]).platform_c_chart;
     let chart_c_enu = chart.chart_c_enu();
-    core::array::from_fn(|i| {
-        core::array::from_fn(|j| {
-            (0..3)
-                .map(|l| platform_c_chart[i][l] * chart_c_enu[l][j])
-                .sum()
-        })
-    })
+    let product = |i: usize, l: usize, j: usize| platform_c_chart[i][l] * chart_c_enu[l][j];
+    square(|i, j| (0..3).map(|l| product(i, l, j)).sum())
 }
 
 /// One line of the reference: quantity, place, and its digits.
@@ -152,30 +145,27 @@ struct Entry<'a> {
 }
 
 fn entries(integration: Integration, run: u32, step: usize) -> Vec<Entry<'static>> {
-    let rule = if integration == Integration::EULER {
-        "euler"
-    } else {
-        "rk4"
+    let rule = match integration == Integration::EULER {
+        true => "euler",
+        false => "rk4",
     };
     let start = format!("{rule},{run},{step},");
-    let lines = REFERENCE
-        .lines()
-        .filter_map(|line| line.strip_prefix(&start));
-    lines
-        .map(|line| {
-            let fields: Vec<&str> = line.split(',').collect();
-            let [quantity, i, j, digits] = fields[..] else {
-                panic!("four fields: {line}")
-            };
-            let index = |text: &str| text.parse().expect("an index");
-            Entry {
-                quantity,
-                i: index(i),
-                j: index(j),
-                digits,
-            }
-        })
-        .collect()
+    let entry = |line: &'static str| {
+        let fields: Vec<&str> = line.split(',').collect();
+        let [quantity, i, j, digits] = fields[..] else {
+            panic!("four fields: {line}")
+        };
+        let [i, j] = [i, j].map(|text| text.parse().expect("an index"));
+        Entry {
+            quantity,
+            i,
+            j,
+            digits,
+        }
+    };
+    let lines = REFERENCE.lines();
+    let lines = lines.filter_map(|line| line.strip_prefix(&start));
+    lines.map(entry).collect()
 }
 
 /// `value` minus the number with the given digits, not rounded before the difference is taken.
@@ -234,16 +224,12 @@ impl std::fmt::Display for Accuracy {
 impl Accuracy {
     /// Adds the squares of the errors at one checkpoint, and keeps the largest.
     fn add(&mut self, estimate: &Estimate, entries: &[Entry<'_>]) {
-        assert_eq!(
-            entries.len(),
-            9 + 9 + 12 + 12,
-            "the reference lacks a checkpoint"
-        );
+        let due = 9 + 9 + 12 + 12;
+        assert_eq!(entries.len(), due, "the reference lacks a checkpoint");
         let number = |entry: &Entry<'_>| entry.digits.parse::<f64>().expect("a number");
         let of = |quantity| {
-            entries
-                .iter()
-                .filter(move |entry| entry.quantity == quantity)
+            let entries = entries.iter();
+            entries.filter(move |entry| entry.quantity == quantity)
         };
         let mut sigma = [0.0; 12];
         for entry in of("covariance").filter(|entry| entry.i == entry.j) {

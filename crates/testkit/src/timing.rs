@@ -57,10 +57,9 @@ pub fn medians<const N: usize, E>(
 /// Model name of the processor, where the system tells it.
 pub fn processor() -> String {
     let description = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let name = description
-        .lines()
-        .find_map(|line| line.strip_prefix("model name"))
-        .map(|name| name.trim_start_matches([' ', '\t', ':']));
+    let mut lines = description.lines();
+    let name = lines.find_map(|line| line.strip_prefix("model name"));
+    let name = name.map(|name| name.trim_start_matches([' ', '\t', ':']));
     name.unwrap_or("an unnamed processor").to_owned()
 }
 
@@ -74,10 +73,7 @@ pub fn target_features() -> String {
         ("avx512f", cfg!(target_feature = "avx512f")),
         ("neon", cfg!(target_feature = "neon")),
     ];
-    let names: Vec<&str> = known
-        .iter()
-        .filter(|(_, on)| *on)
-        .map(|(name, _)| *name)
-        .collect();
+    let on = known.iter().filter(|(_, on)| *on);
+    let names: Vec<&str> = on.map(|(name, _)| *name).collect();
     format!("{}: {}", std::env::consts::ARCH, names.join(" "))
 }

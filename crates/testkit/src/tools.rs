@@ -179,10 +179,8 @@ pub fn leave_out(reason: &str) {
 #[track_caller]
 fn leave_out_among(reason: &str, variables: Variables) {
     let ci = variables("CI").is_some_and(|value| value == "true" || value == "1");
-    assert!(
-        !ci,
-        "nothing is left out in continuous integration: {reason}"
-    );
+    let rule = "nothing is left out in continuous integration";
+    assert!(!ci, "{rule}: {reason}");
     eprintln!("\nLEFT OUT: {reason}\n");
 }
 

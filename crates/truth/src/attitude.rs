@@ -24,10 +24,7 @@ impl Attitude {
         let angle = norm(rotation_rad);
         let half = 0.5 * angle;
         let scale = if angle > 0.0 { sin(half) / angle } else { 0.5 };
-        Self {
-            w: cos(half),
-            vector: rotation_rad.map(|component| component * scale),
-        }
+        Self::from_axis(rotation_rad, cos(half), scale)
     }
 
     /// The frame that `s` becomes when it is turned about a unit axis by an angle, given by cosine
@@ -81,11 +78,8 @@ impl Attitude {
     /// The matrix `t_c_s`, row by row: its columns are the axes of `s` resolved in `t`.
     #[must_use]
     pub fn matrix(self) -> [[f64; 3]; 3] {
-        let columns = [
-            self.resolve([1.0, 0.0, 0.0]),
-            self.resolve([0.0, 1.0, 0.0]),
-            self.resolve([0.0, 0.0, 1.0]),
-        ];
+        let columns = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let columns = columns.map(|axis| self.resolve(axis));
         core::array::from_fn(|row| columns.map(|column| column[row]))
     }
 
@@ -101,10 +95,8 @@ impl Attitude {
     /// The attitude of `s` against `t`.
     #[must_use]
     pub fn inverse(self) -> Self {
-        Self {
-            w: self.w,
-            vector: self.vector.map(|component| -component),
-        }
+        let vector = self.vector.map(|component| -component);
+        Self { vector, ..self }
     }
 
     /// With `self` as `t` against `s` and `first` as `s` against `r`: `t` against `r`.
@@ -123,13 +115,14 @@ impl Attitude {
     pub fn rotation_from_rad(self, other: Self) -> [f64; 3] {
         let mut step = self.after(other.inverse());
         if step.w < 0.0 {
-            step = step.negated();
+            // The same attitude.
+            step = step.inverse();
+            step.w = -step.w;
         }
         let sine = norm(step.vector);
-        let scale = if sine > 0.0 {
-            2.0 * atan2(sine, step.w) / sine
-        } else {
-            2.0
+        let scale = match sine > 0.0 {
+            true => 2.0 * atan2(sine, step.w) / sine,
+            false => 2.0,
         };
         step.vector.map(|component| component * scale)
     }
@@ -158,17 +151,7 @@ impl Attitude {
     /// With length 1.
     pub(crate) fn normalised(self) -> Self {
         let scale = 1.0 / self.length();
-        Self {
-            w: self.w * scale,
-            vector: self.vector.map(|component| component * scale),
-        }
-    }
-
-    fn negated(self) -> Self {
-        Self {
-            w: -self.w,
-            vector: self.vector.map(|component| -component),
-        }
+        Self::from_axis(self.vector, self.w * scale, scale)
     }
 }
 
@@ -218,9 +201,8 @@ mod tests {
 
     fn worst(a: [[f64; 3]; 3], b: [[f64; 3]; 3]) -> f64 {
         let pairs = a.into_iter().flatten().zip(b.into_iter().flatten());
-        pairs
-            .map(|(a, b): (f64, f64)| (a - b).abs())
-            .fold(0.0, f64::max)
+        let off = pairs.map(|(a, b): (f64, f64)| (a - b).abs());
+        off.fold(0.0, f64::max)
     }
 
     /// Three turns of a few roundings each.

@@ -31,26 +31,22 @@ impl Scenario {
             .chain(self.scalars());
         for (name, value, bound) in all {
             if !bound.holds(value) {
-                return Err(Error::InvalidScenario {
-                    name,
-                    found: value.to_string(),
-                    expected: bound.describe(),
-                });
+                return invalid(name, value.to_string(), bound.describe());
             }
         }
-        self.check_hidden()?;
-        let mut gaps = self.gaps_s.iter();
-        match gaps.find(|gap| !(gap[0] > 0.0 && gap[1] > gap[0])) {
-            Some(gap) => Err(Error::InvalidScenario {
-                name: "gaps_s",
-                found: format!("{gap:?}"),
-                expected: "0 < from < to (the first row has the initial attitude)".to_owned(),
-            }),
-            None => Ok(()),
+        if let Some(conflict) = self.conflict() {
+            return invalid(conflict.name, conflict.found, conflict.expected);
         }
+        let mut gaps = self.gaps_s.iter();
+        let wrong = gaps.find(|gap| !(gap[0] > 0.0 && gap[1] > gap[0]));
+        let expected = || "0 < from < to (the first row has the initial attitude)".to_owned();
+        wrong.map_or(Ok(()), |gap| {
+            invalid("gaps_s", format!("{gap:?}"), expected())
+        })
     }
 
     /// Scalar fields with their names and bounds.
+    #[rustfmt::skip] // a table
     fn scalars(&self) -> [(&'static str, f64, Bound); 12] {
         let temperature = self.temperature.unwrap_or_default();
         let latitude = Bound::Within(-90.0, 90.0);
@@ -60,89 +56,46 @@ impl Scenario {
         [
             ("latitude_deg", self.latitude_deg, latitude),
             ("accel_noise_g", self.accel_noise_g, Bound::NotNegative),
-            (
-                "gyro_noise_deg_per_h",
-                self.gyro_noise_deg_per_h,
-                DRIFT_SPREAD,
-            ),
+            ("gyro_noise_deg_per_h", self.gyro_noise_deg_per_h, DRIFT_SPREAD),
             ("gravity", self.bench_gravity(), Bound::Positive),
             ("start_s", self.start_s, Bound::Finite),
             ("interval_s", self.interval_s, Bound::Positive),
             ("duration_s", self.duration_s, duration),
-            (
-                "duration_s / interval_s",
-                self.duration_s / self.interval_s,
-                rows,
-            ),
+            ("duration_s / interval_s", self.duration_s / self.interval_s, rows),
             ("missing_fraction", self.missing_fraction, share),
             ("temperature.mean_c", temperature.mean_c, Bound::Finite),
             ("temperature.daily_k", temperature.daily_k, Bound::Finite),
-            (
-                "temperature.wander_k",
-                temperature.wander_k,
-                Bound::NotNegative,
-            ),
+            ("temperature.wander_k", temperature.wander_k, Bound::NotNegative),
         ]
     }
 
     /// Fields of three numbers with their names and bounds.
+    #[rustfmt::skip] // a table
     fn vectors(&self) -> [(&'static str, [f64; 3], Bound); 6] {
         let coefficients = self.coefficients;
+        let field_gauss = self.magnetic_field_gauss.unwrap_or_default();
         [
-            (
-                "initial_angles_sigma_deg",
-                self.initial_angles_sigma_deg,
-                Bound::NotNegative,
-            ),
+            ("initial_angles_sigma_deg", self.initial_angles_sigma_deg, Bound::NotNegative),
             ("initial", self.declared_angles_deg(), Bound::Finite),
-            (
-                "magnetic_field_gauss",
-                self.magnetic_field_gauss.unwrap_or_default(),
-                Bound::Finite,
-            ),
-            (
-                "coefficients.bias_deg_per_h",
-                coefficients.bias_deg_per_h,
-                DRIFT,
-            ),
-            (
-                "coefficients.g_deg_per_h_per_g",
-                coefficients.g_deg_per_h_per_g,
-                DRIFT,
-            ),
-            (
-                "coefficients.gg_deg_per_h_per_g2",
-                coefficients.gg_deg_per_h_per_g2,
-                DRIFT,
-            ),
+            ("magnetic_field_gauss", field_gauss, Bound::Finite),
+            ("coefficients.bias_deg_per_h", coefficients.bias_deg_per_h, DRIFT),
+            ("coefficients.g_deg_per_h_per_g", coefficients.g_deg_per_h_per_g, DRIFT),
+            ("coefficients.gg_deg_per_h_per_g2", coefficients.gg_deg_per_h_per_g2, DRIFT),
         ]
     }
 
     /// The first hidden effect that the scenario does not admit.
     pub(crate) fn conflict(&self) -> Option<Conflict> {
-        let effects = self.hidden.iter().enumerate();
-        effects
-            .filter_map(|(index, hidden)| {
-                let (name, found, expected) = self.conflict_of(index, hidden)?;
-                Some(Conflict {
-                    index,
-                    name,
-                    found,
-                    expected,
-                })
+        let mut effects = self.hidden.iter().enumerate();
+        effects.find_map(|(index, hidden)| {
+            let (name, found, expected) = self.conflict_of(index, hidden)?;
+            Some(Conflict {
+                index,
+                name,
+                found,
+                expected,
             })
-            .next()
-    }
-
-    fn check_hidden(&self) -> Result<(), Error> {
-        match self.conflict() {
-            Some(conflict) => Err(Error::InvalidScenario {
-                name: conflict.name,
-                found: conflict.found,
-                expected: conflict.expected,
-            }),
-            None => Ok(()),
-        }
+        })
     }
 
     /// The field, what was found and what was expected.
@@ -168,13 +121,9 @@ impl Scenario {
             Effect::Latitude => {
                 let latitude_deg = self.latitude_deg + hidden.value(0);
                 let bound = Bound::Within(-90.0, 90.0);
-                return (!bound.holds(latitude_deg)).then(|| {
-                    (
-                        "latitude_deg",
-                        format!("{latitude_deg} with the effect {id}"),
-                        bound.describe(),
-                    )
-                });
+                let found = format!("{latitude_deg} with the effect {id}");
+                let conflict = ("latitude_deg", found, bound.describe());
+                return (!bound.holds(latitude_deg)).then_some(conflict);
             }
             Effect::GyroStep(_) => Some(hidden.value(1)),
             Effect::Knock => Some(hidden.value(3)),
@@ -189,12 +138,15 @@ impl Scenario {
         }
         let before = self.hidden.get(..index)?;
         let twice = !hidden.effect().can_repeat() && before.iter().any(|other| other.id() == id);
-        twice.then(|| {
-            (
-                "hidden",
-                format!("{id} twice"),
-                "it once, with the sum of both sizes".to_owned(),
-            )
-        })
+        let expected = "it once, with the sum of both sizes".to_owned();
+        twice.then(|| ("hidden", format!("{id} twice"), expected))
     }
+}
+
+fn invalid(name: &'static str, found: String, expected: String) -> Result<(), Error> {
+    Err(Error::InvalidScenario {
+        name,
+        found,
+        expected,
+    })
 }

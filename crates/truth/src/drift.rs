@@ -33,22 +33,17 @@ enum Part {
         size: f64,
         powers: [u8; 3],
     },
-    Ramp {
-        per_s: f64,
-    },
-    Warmup {
-        size: f64,
-        time_constant_s: f64,
-    },
+    /// Per second.
+    Ramp(f64),
+    /// The size and the time constant, s.
+    Warmup(f64, f64),
     Wave(Wave),
     Temperature {
         size: f64,
         of: OfTemperature,
     },
-    Magnetic {
-        per_gauss: f64,
-        axis: usize,
-    },
+    /// Per gauss, along an axis.
+    Magnetic(f64, usize),
     Step {
         size: f64,
         onset_s: f64,
@@ -115,10 +110,9 @@ impl<'a> DriftLaw<'a> {
         let mut drift = self.free_drift_deg_per_h(moment);
         for zone in &self.dead_zones {
             let free = &mut drift[zone.gyro];
-            *free = if zone.side == 0.0 {
-                0.0
-            } else {
-                *free - zone.side * zone.size
+            *free = match zone.side == 0.0 {
+                true => 0.0,
+                false => *free - zone.side * zone.size,
             };
         }
         drift
@@ -182,16 +176,12 @@ impl<'a> DriftLaw<'a> {
     pub(crate) fn longest_step_s(&self) -> f64 {
         /// Step for terms of the caller, whose rate of change is unknown.
         const UNKNOWN_S: f64 = 10.0;
-        let unknown = self
-            .terms
-            .iter()
-            .any(|term| matches!(term, Term::Drift(_)))
-            .then_some(UNKNOWN_S);
+        let mut terms = self.terms.iter();
+        let unknown = terms.any(|term| matches!(term, Term::Drift(_)));
+        let unknown = unknown.then_some(UNKNOWN_S);
         let parts = self.parts.iter().filter_map(|(_, part)| match part {
             Part::Wave(wave) => Some(TAU / wave.rate_rad_per_s / 300.0),
-            Part::Warmup {
-                time_constant_s, ..
-            } => Some(time_constant_s / 60.0),
+            Part::Warmup(_, time_constant_s) => Some(time_constant_s / 60.0),
             _ => None,
         });
         parts.chain(unknown).fold(f64::INFINITY, f64::min)
@@ -218,42 +208,25 @@ impl Part {
         let size = hidden.value(0);
         let (gyro, part) = match hidden.effect() {
             Effect::GyroProduct { gyro, powers } => (gyro, Self::Product { size, powers }),
-            Effect::GyroRamp(gyro) => {
-                let per_s = size / DAY_S;
-                (gyro, Self::Ramp { per_s })
-            }
-            Effect::GyroWarmup(gyro) => {
-                let time_constant_s = hidden.value(1) * HOUR_S;
-                (
-                    gyro,
-                    Self::Warmup {
-                        size,
-                        time_constant_s,
-                    },
-                )
-            }
+            Effect::GyroRamp(gyro) => (gyro, Self::Ramp(size / DAY_S)),
+            Effect::GyroWarmup(gyro) => (gyro, Self::Warmup(size, hidden.value(1) * HOUR_S)),
             Effect::GyroDiurnal(gyro) => {
                 (gyro, Self::Wave(Wave::new(size, hidden.value(1), DAY_S)))
             }
             Effect::GyroTone(gyro) => (gyro, Self::Wave(Wave::tone(hidden))),
             Effect::GyroTemperature { gyro, of } => (gyro, Self::Temperature { size, of }),
-            Effect::GyroMagnetic(gyro) => {
-                let (per_gauss, axis) = (size, gyro);
-                (gyro, Self::Magnetic { per_gauss, axis })
-            }
+            Effect::GyroMagnetic(gyro) => (gyro, Self::Magnetic(size, gyro)),
             Effect::GyroStep(gyro) => {
-                let onset_s = hidden.value(1);
-                let on = false;
+                let (onset_s, on) = (hidden.value(1), false);
                 (gyro, Self::Step { size, onset_s, on })
             }
             Effect::GyroSign { gyro, axis } => {
-                let negative = false;
-                let part = Self::Sign {
+                let sign = Self::Sign {
                     size,
                     axis,
-                    negative,
+                    negative: false,
                 };
-                (gyro, part)
+                (gyro, sign)
             }
             _ => return None,
         };
@@ -269,22 +242,16 @@ impl Part {
                     (0..*power).fold(product, |product, _| product * accel)
                 })
             }
-            Self::Ramp { per_s } => per_s * moment.time_s,
-            Self::Warmup {
-                size,
-                time_constant_s,
-            } => size * exp(-moment.time_s / time_constant_s),
+            Self::Ramp(per_s) => per_s * moment.time_s,
+            Self::Warmup(size, time_constant_s) => size * exp(-moment.time_s / time_constant_s),
             Self::Wave(wave) => wave.at(moment.time_s),
             Self::Temperature { size, of } => size * of.at(moment),
-            Self::Magnetic { per_gauss, axis } => per_gauss * moment.field_gauss[*axis],
+            Self::Magnetic(per_gauss, axis) => per_gauss * moment.field_gauss[*axis],
             Self::Step { size, on, .. } => f64::from(*on) * size,
-            Self::Sign { size, negative, .. } => {
-                if *negative {
-                    -size
-                } else {
-                    *size
-                }
-            }
+            Self::Sign { size, negative, .. } => match negative {
+                true => -size,
+                false => *size,
+            },
         }
     }
 }
@@ -302,12 +269,8 @@ impl Wave {
     /// `size sin(2π t / period + phase)`.
     pub(crate) fn tone(hidden: &Hidden) -> Self {
         let [size, period_h, phase_deg] = hidden.three();
-        let phase_rad = phase_deg.to_radians();
-        Self::new(
-            size * cos(phase_rad),
-            size * sin(phase_rad),
-            period_h * HOUR_S,
-        )
+        let [sine, cosine] = [cos, sin].map(|of| size * of(phase_deg.to_radians()));
+        Self::new(sine, cosine, period_h * HOUR_S)
     }
 
     pub(crate) fn at(&self, time_s: f64) -> f64 {
@@ -319,10 +282,9 @@ impl Wave {
 impl DeadZone {
     fn side_of(&self, free_drift: [f64; 3]) -> f64 {
         let free = free_drift[self.gyro];
-        if free.abs() <= self.size {
-            0.0
-        } else {
-            free.signum()
+        match free.abs() <= self.size {
+            true => 0.0,
+            false => free.signum(),
         }
     }
 }

@@ -109,6 +109,7 @@ const fn part(name: &'static str, unit: &'static str) -> Parameter {
 }
 
 const ONSET: Parameter = shape("onset_s", "s", Bound::NotNegative);
+const TIME_CONSTANT: Parameter = shape("time_constant_h", "h", Bound::Positive);
 const PERIOD: Parameter = shape("period_h", "h", Bound::Positive);
 const PHASE: Parameter = Parameter {
     default: Some(0.0),
@@ -146,12 +147,7 @@ impl Effect {
             })],
             Self::GyroRamp(_) => vec![size("deg/h/day")],
             Self::GyroStep(_) => vec![size("deg/h"), ONSET],
-            Self::GyroWarmup(_) => {
-                vec![
-                    size("deg/h"),
-                    shape("time_constant_h", "h", Bound::Positive),
-                ]
-            }
+            Self::GyroWarmup(_) => vec![size("deg/h"), TIME_CONSTANT],
             Self::GyroDiurnal(_) => vec![part("sine", "deg/h"), part("cosine", "deg/h")],
             Self::GyroTemperature { of, .. } => vec![size(match of {
                 OfTemperature::Itself | OfTemperature::Hysteresis => "deg/h/K",
@@ -209,10 +205,8 @@ impl Effect {
 
     /// The effect of an id.
     pub(crate) fn of(id: &str) -> Option<Self> {
-        Self::all()
-            .into_iter()
-            .find(|(name, _)| name == id)
-            .map(|(_, effect)| effect)
+        let mut all = Self::all().into_iter();
+        all.find_map(|(name, effect)| (name == id).then_some(effect))
     }
 
     /// Every effect with its id.
@@ -244,10 +238,8 @@ impl Effect {
                 all.push((format!("gyro_{letter}.sign_{other}"), effect));
                 if axis != gyro {
                     let towards = axis;
-                    all.push((
-                        format!("gyro_{letter}{other}.axis_misalignment"),
-                        Self::AxisMisalignment { gyro, towards },
-                    ));
+                    let name = format!("gyro_{letter}{other}.axis_misalignment");
+                    all.push((name, Self::AxisMisalignment { gyro, towards }));
                 }
             }
         }
@@ -322,13 +314,9 @@ fn product_name(powers: [u8; 3]) -> String {
     if powers == [0; 3] {
         return "bias".to_owned();
     }
-    let letters = AXES
-        .into_iter()
-        .zip(powers)
-        .flat_map(|(letter, power)| core::iter::repeat_n(letter, power.into()));
-    core::iter::once("g_".to_owned())
-        .chain(letters.map(String::from))
-        .collect()
+    let letters = AXES.into_iter().zip(powers);
+    let letters = letters.map(|(letter, power)| letter.repeat(power.into()));
+    format!("g_{}", letters.collect::<String>())
 }
 
 #[cfg(test)]

@@ -54,9 +54,8 @@ impl GyroNoise {
 
     /// Present value of the random walk \[deg/h\].
     pub(crate) fn walk_deg_per_h(&self) -> [f64; 3] {
-        self.walk
-            .as_ref()
-            .map_or([0.0; 3], |walk| walk.now_deg_per_h)
+        let walk = self.walk.as_ref();
+        walk.map_or([0.0; 3], |walk| walk.now_deg_per_h)
     }
 }
 
@@ -67,12 +66,9 @@ impl Walk {
         let (increments, bridges) = (self.steps.three_normals(), self.steps.three_normals());
         core::array::from_fn(|gyro| {
             let sigma = self.size_deg_per_h_per_sqrt_h[gyro] * root_h;
-            let (mean, end) = walked(
-                self.now_deg_per_h[gyro],
-                sigma,
-                [increments[gyro], bridges[gyro]],
-            );
-            self.now_deg_per_h[gyro] = end;
+            let now = &mut self.now_deg_per_h[gyro];
+            let (mean, end) = walked(*now, sigma, [increments[gyro], bridges[gyro]]);
+            *now = end;
             mean
         })
     }

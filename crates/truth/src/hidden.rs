@@ -54,9 +54,8 @@ impl Hidden {
             }
         }
         let values = known.iter().map(|parameter| {
-            let mut given = parameters
-                .iter()
-                .filter(|(name, _)| *name == parameter.name);
+            let all = parameters.iter();
+            let mut given = all.filter(|(name, _)| *name == parameter.name);
             let value = given.next().map(|(_, value)| *value);
             if given.next().is_some() {
                 return Err(invalid(id, parameter, "two values", "one value".to_owned()));
@@ -68,12 +67,13 @@ impl Hidden {
                     parameter: parameter.name,
                     expected: parameter.bound.describe(),
                 })?;
-            if parameter.bound.holds(value) {
-                Ok(value)
-            } else {
-                let expected = parameter.bound.describe();
-                Err(invalid(id, parameter, &value.to_string(), expected))
-            }
+            let expected = || parameter.bound.describe();
+            let refused = || invalid(id, parameter, &value.to_string(), expected());
+            parameter
+                .bound
+                .holds(value)
+                .then_some(value)
+                .ok_or_else(refused)
         });
         Ok(Self {
             values: values.collect::<Result<_, _>>()?,
@@ -97,10 +97,8 @@ impl Hidden {
     /// Name, value and unit of each parameter.
     #[must_use]
     pub fn parameters(&self) -> Vec<(&'static str, f64, &'static str)> {
-        let known = self.effect.parameters().into_iter();
-        known
-            .zip(&self.values)
-            .map(|(parameter, value)| (parameter.name, *value, parameter.unit))
+        let both = self.effect.parameters().into_iter().zip(&self.values);
+        both.map(|(parameter, value)| (parameter.name, *value, parameter.unit))
             .collect()
     }
 
@@ -111,16 +109,12 @@ impl Hidden {
     ///
     /// [`Error::InvalidParameter`] if a size then makes no sense.
     pub fn scaled(&self, factor: f64) -> Result<Self, Error> {
-        let known = self.effect.parameters();
-        let parameters: Vec<(&str, f64)> = known
-            .iter()
-            .zip(&self.values)
-            .map(|(parameter, value)| {
-                let factor = if parameter.is_size { factor } else { 1.0 };
-                (parameter.name, value * factor)
-            })
-            .collect();
-        Self::new(&self.id, &parameters)
+        let both = self.effect.parameters().into_iter().zip(&self.values);
+        let scaled = both.map(|(parameter, value)| {
+            let factor = if parameter.is_size { factor } else { 1.0 };
+            (parameter.name, value * factor)
+        });
+        Self::new(&self.id, &scaled.collect::<Vec<_>>())
     }
 
     pub(crate) fn effect(&self) -> Effect {

@@ -33,11 +33,8 @@ pub(crate) fn read_hidden(source: &SourceText) -> Result<Vec<Located>, FileError
     let Ok(root) = DeTable::parse(source.text()) else {
         return Ok(Vec::new());
     };
-    let entry = root
-        .get_ref()
-        .iter()
-        .find(|(key, _)| key.get_ref() == HIDDEN);
-    let Some((_, value)) = entry else {
+    let mut keys = root.get_ref().iter();
+    let Some((_, value)) = keys.find(|(key, _)| key.get_ref() == HIDDEN) else {
         return Ok(Vec::new());
     };
     let Some(items) = value.get_ref().as_array() else {
@@ -75,11 +72,8 @@ fn read_one(
         ));
     };
     let Some(id) = effect.get_ref().as_str() else {
-        return Err(wrong_type(
-            source,
-            effect.span(),
-            "the id of an effect in quotes",
-        ));
+        let expected = "the id of an effect in quotes";
+        return Err(wrong_type(source, effect.span(), expected));
     };
     let mut parameters: Vec<(&str, f64)> = Vec::new();
     let others = table.iter().filter(|(key, _)| key.get_ref() != EFFECT);
@@ -90,11 +84,10 @@ fn read_one(
     }
     let hidden = Hidden::new(id, &parameters).map_err(|error| {
         let place = |parameter: &str| {
-            table
-                .iter()
-                .find(|(key, _)| key.get_ref() == parameter)
-                .map(|(key, value)| (key.span(), value.span()))
-                .unwrap_or((effect.span(), effect.span()))
+            let found = table.iter().find(|(key, _)| key.get_ref() == parameter);
+            found.map_or((effect.span(), effect.span()), |(key, value)| {
+                (key.span(), value.span())
+            })
         };
         located(source, error, &effect.span(), place)
     })?;
@@ -165,9 +158,10 @@ fn located(
 fn number(value: &DeValue<'_>) -> Option<f64> {
     match value {
         DeValue::Float(float) => float.as_str().parse().ok(),
-        DeValue::Integer(integer) => i64::from_str_radix(integer.as_str(), integer.radix())
-            .ok()
-            .map(|integer| integer as f64),
+        DeValue::Integer(integer) => {
+            let read = i64::from_str_radix(integer.as_str(), integer.radix());
+            read.ok().map(|integer| integer as f64)
+        }
         _ => None,
     }
 }

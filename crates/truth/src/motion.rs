@@ -56,34 +56,33 @@ struct Line {
 
 impl Line {
     fn at(&self, time_s: f64) -> Thermal {
-        let (start, change) = (&self.start, &self.change);
         let since_s = time_s - self.start_s;
-        Thermal {
-            temperature_k: start.temperature_k + change.temperature_k * since_s,
-            rate_k_per_h: start.rate_k_per_h + change.rate_k_per_h * since_s,
-            hysteresis_k: start.hysteresis_k + change.hysteresis_k * since_s,
-        }
+        each(&self.start, &self.change, |start, change| {
+            start + change * since_s
+        })
     }
 
     /// From one value to another.
     fn between(start_s: f64, start: Thermal, end_s: f64, end: Thermal) -> Self {
         let duration_s = end_s - start_s;
-        let per_s = |end: f64, start: f64| {
-            if duration_s > 0.0 {
-                (end - start) / duration_s
-            } else {
-                0.0
-            }
-        };
+        let change = each(&start, &end, |start, end| match duration_s > 0.0 {
+            true => (end - start) / duration_s,
+            false => 0.0,
+        });
         Self {
             start_s,
             start,
-            change: Thermal {
-                temperature_k: per_s(end.temperature_k, start.temperature_k),
-                rate_k_per_h: per_s(end.rate_k_per_h, start.rate_k_per_h),
-                hysteresis_k: per_s(end.hysteresis_k, start.hysteresis_k),
-            },
+            change,
         }
+    }
+}
+
+/// Made of the same number of each.
+fn each(one: &Thermal, other: &Thermal, of: impl Fn(f64, f64) -> f64) -> Thermal {
+    Thermal {
+        temperature_k: of(one.temperature_k, other.temperature_k),
+        rate_k_per_h: of(one.rate_k_per_h, other.rate_k_per_h),
+        hysteresis_k: of(one.hysteresis_k, other.hysteresis_k),
     }
 }
 
@@ -106,13 +105,9 @@ impl<'a> Motion<'a> {
         let platform = scenario.platform();
         let law = DriftLaw::new(platform.coefficients, &scenario.hidden, terms);
         let mut earth_rate = EARTH_RATE_RAD_PER_S;
-        let mut events: Vec<Event> = law
-            .onsets_s()
-            .map(|time_s| Event {
-                time_s,
-                turn_rad: [0.0; 3],
-            })
-            .collect();
+        let turn_rad = [0.0; 3];
+        let onsets = law.onsets_s();
+        let mut events: Vec<Event> = onsets.map(|time_s| Event { time_s, turn_rad }).collect();
         for hidden in &scenario.hidden {
             match hidden.effect() {
                 Effect::EarthRate => earth_rate *= 1.0 + hidden.value(0),

@@ -26,10 +26,6 @@ impl Platform {
     #[must_use]
     pub fn earth_rate_enu_rad_per_s(&self) -> [f64; 3] {
         let latitude_rad = self.latitude_deg.to_radians();
-        [
-            0.0,
-            EARTH_RATE_RAD_PER_S * cos(latitude_rad),
-            EARTH_RATE_RAD_PER_S * sin(latitude_rad),
-        ]
+        [0.0, cos(latitude_rad), sin(latitude_rad)].map(|part| EARTH_RATE_RAD_PER_S * part)
     }
 }

@@ -75,9 +75,8 @@ impl Population {
         let latitude_deg = stream.between(-self.largest_latitude_deg, self.largest_latitude_deg);
         let days = stream.between(self.duration_days[0], self.duration_days[1]);
         let seed = stream.whole();
-        let interval_s = *stream
-            .one_of(&self.intervals_s)
-            .unwrap_or(&self.common.interval_s);
+        let drawn = stream.one_of(&self.intervals_s).copied();
+        let interval_s = drawn.unwrap_or(self.common.interval_s);
         let duration_s = (days * 86_400.0 / interval_s).floor() * interval_s;
         let mut gaps_s = self.common.gaps_s.clone();
         gaps_s.extend(self.gaps_s(&mut stream, duration_s));

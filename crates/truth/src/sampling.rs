@@ -77,9 +77,8 @@ impl<'a> Sampling<'a> {
         if !self.scenario.logs(since_first_s) {
             return false;
         }
-        self.record
-            .time_s
-            .push(self.scenario.start_s + since_first_s);
+        let time_s = self.scenario.start_s + since_first_s;
+        self.record.time_s.push(time_s);
         self.record.accel_g.push(sample);
         if let (Some(column), Some(course)) = (&mut self.record.temperature_c, &self.temperature) {
             column.extend(course.get(row).map(|point| point.temperature_c));
@@ -158,10 +157,11 @@ impl Outliers {
     /// The error of the next component, if it is an outlier, of either sign.
     fn next_g(&mut self) -> Option<f64> {
         let (chance, sign) = (self.stream.uniform(), self.stream.uniform());
-        (chance < self.fraction).then_some(if sign < 0.5 {
+        let size_g = if sign < 0.5 {
             -self.size_g
         } else {
             self.size_g
-        })
+        };
+        (chance < self.fraction).then_some(size_g)
     }
 }

@@ -158,16 +158,14 @@ impl Scenario {
 
     /// The temperature at each row of the regular grid, if the scenario has one.
     pub(crate) fn temperature_course(&self) -> Option<Vec<Point>> {
-        self.temperature
-            .map(|temperature| temperature.course(self.seed, self.grid_s()))
+        let temperature = self.temperature?;
+        Some(temperature.course(self.seed, self.grid_s()))
     }
 
     /// True if the logger writes a row at this time since the first.
     pub(crate) fn logs(&self, since_first_s: f64) -> bool {
-        !self
-            .gaps_s
-            .iter()
-            .any(|gap| (gap[0]..gap[1]).contains(&since_first_s))
+        let mut gaps = self.gaps_s.iter();
+        !gaps.any(|gap| (gap[0]..gap[1]).contains(&since_first_s))
     }
 
     /// The angles that the bench file declares, which a random attitude gets from the seed.
@@ -175,9 +173,10 @@ impl Scenario {
     pub fn declared_angles_deg(&self) -> [f64; 3] {
         match self.initial {
             InitialAttitude::AnglesDeg(angles_deg) => angles_deg,
-            InitialAttitude::Random => Stream::new(self.seed, Purpose::InitialAttitude)
-                .attitude()
-                .angles_deg(),
+            InitialAttitude::Random => {
+                let mut stream = Stream::new(self.seed, Purpose::InitialAttitude);
+                stream.attitude().angles_deg()
+            }
         }
     }
 

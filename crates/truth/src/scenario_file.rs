@@ -17,26 +17,16 @@ use crate::hidden_file::{self, HIDDEN, read_hidden};
 use crate::scenario::{InitialAttitude, MAX_ROWS, Scenario};
 use crate::temperature::Temperature;
 
+#[rustfmt::skip] // a table
 const ROOT_KEYS: [&str; 9] = [
-    "seed",
-    "site",
-    "platform",
-    "gyros",
-    "noise",
-    "sampling",
-    "prior",
-    "temperature",
-    HIDDEN,
+    "seed", "site", "platform", "gyros", "noise", "sampling", "prior", "temperature", HIDDEN,
 ];
 const TEMPERATURE_KEYS: [&str; 3] = ["mean_c", "daily_k", "wander_k"];
 const GYRO_KEYS: [&str; 3] = ["bias_deg_per_h", "g_deg_per_h_per_g", "gg_deg_per_h_per_g2"];
-const SAMPLING_KEYS: [&str; 5] = [
-    "duration_s",
-    "interval_s",
-    "start_s",
-    "gaps_s",
-    "missing_fraction",
-];
+const PLATFORM_KEYS: [&str; 2] = ["initial_angles_deg", "initial_angles_sigma_deg"];
+#[rustfmt::skip] // a table
+const SAMPLING_KEYS: [&str; 5] =
+    ["duration_s", "interval_s", "start_s", "gaps_s", "missing_fraction"];
 
 impl Scenario {
     /// Reads a scenario file.
@@ -60,10 +50,10 @@ impl Scenario {
     /// The text of a scenario file that [`Scenario::parse`] reads as the same scenario.
     #[must_use]
     pub fn to_toml(&self) -> String {
-        let mut text = format!(
-            "seed = {}\n\n[site]\nlatitude_deg = {:?}\n",
-            self.seed, self.latitude_deg
-        );
+        let Self {
+            seed, latitude_deg, ..
+        } = self;
+        let mut text = format!("seed = {seed}\n\n[site]\nlatitude_deg = {latitude_deg:?}\n");
         if let Some(gravity) = self.gravity {
             text.push_str(&gravity.to_toml());
         }
@@ -75,11 +65,8 @@ impl Scenario {
             InitialAttitude::AnglesDeg(angles_deg) => writeln!(text, "{angles_deg:?}"),
             InitialAttitude::Random => writeln!(text, "\"random\""),
         };
-        let _ = writeln!(
-            text,
-            "initial_angles_sigma_deg = {:?}\n\n[gyros]",
-            self.initial_angles_sigma_deg
-        );
+        let sigma_deg = self.initial_angles_sigma_deg;
+        let _ = writeln!(text, "initial_angles_sigma_deg = {sigma_deg:?}\n\n[gyros]");
         let coefficients = [
             self.coefficients.bias_deg_per_h,
             self.coefficients.g_deg_per_h_per_g,
@@ -139,10 +126,7 @@ impl Scenario {
     fn from_document(document: &Document) -> Result<Self, Error> {
         document.interpret(&ROOT_KEYS, |root| {
             let site = Site::from_table(&root.table(Site::TABLE, &Site::KEYS)?)?;
-            let platform = root.table(
-                "platform",
-                &["initial_angles_deg", "initial_angles_sigma_deg"],
-            )?;
+            let platform = root.table("platform", &PLATFORM_KEYS)?;
             let noise = read_noise(root)?;
             let scenario = Self {
                 seed: root.whole_number("seed")?,
@@ -152,7 +136,7 @@ impl Scenario {
                 initial: read_initial(&platform)?,
                 // A bench file, which goes with every record, asks for positive sigmas.
                 initial_angles_sigma_deg: platform
-                    .three_numbers("initial_angles_sigma_deg", Bound::Positive)?,
+                    .three_numbers(PLATFORM_KEYS[1], Bound::Positive)?,
                 accel_noise_g: noise.accel_g,
                 gyro_noise_deg_per_h: noise.gyro_deg_per_h,
                 prior: Prior::from_root(root)?,
@@ -183,13 +167,11 @@ fn read_coefficients(root: &Table<'_>) -> Result<Coefficients, Error> {
 }
 
 fn read_initial(platform: &Table<'_>) -> Result<InitialAttitude, Error> {
-    const KEY: &str = "initial_angles_deg";
-    if platform.is_word(KEY, "random") {
+    if platform.is_word(PLATFORM_KEYS[0], "random") {
         return Ok(InitialAttitude::Random);
     }
-    platform
-        .three_numbers(KEY, Bound::ANGLE_DEG)
-        .map(InitialAttitude::AnglesDeg)
+    let angles_deg = platform.three_numbers(PLATFORM_KEYS[0], Bound::ANGLE_DEG)?;
+    Ok(InitialAttitude::AnglesDeg(angles_deg))
 }
 
 fn read_temperature(root: &Table<'_>) -> Result<Option<Temperature>, Error> {
@@ -197,19 +179,14 @@ fn read_temperature(root: &Table<'_>) -> Result<Option<Temperature>, Error> {
         return Ok(None);
     };
     let usual = Temperature::default();
-    let number = |key, bound, usual| {
-        table
-            .optional_number(key, bound)
-            .map(|number| number.unwrap_or(usual))
+    let number = |which: usize, bound, usual| {
+        let number = table.optional_number(TEMPERATURE_KEYS[which], bound);
+        number.map(|number| number.unwrap_or(usual))
     };
     Ok(Some(Temperature {
-        mean_c: number(
-            TEMPERATURE_KEYS[0],
-            Bound::Within(-100.0, 100.0),
-            usual.mean_c,
-        )?,
-        daily_k: number(TEMPERATURE_KEYS[1], Bound::Finite, usual.daily_k)?,
-        wander_k: number(TEMPERATURE_KEYS[2], Bound::NotNegative, usual.wander_k)?,
+        mean_c: number(0, Bound::Within(-100.0, 100.0), usual.mean_c)?,
+        daily_k: number(1, Bound::Finite, usual.daily_k)?,
+        wander_k: number(2, Bound::NotNegative, usual.wander_k)?,
     }))
 }
 
@@ -229,22 +206,17 @@ fn with_sampling(scenario: Scenario, sampling: &Table<'_>) -> Result<Scenario, E
     }
     let gaps_s = sampling.optional_intervals("gaps_s", Bound::NotNegative)?;
     if gaps_s.iter().any(|gap| gap[0] <= 0.0) {
-        return out_of_range(
-            "gaps_s",
-            "gaps that begin after 0 s",
-            "the first row is needed: the initial attitude belongs to it",
-        );
+        let advice = "the first row is needed: the initial attitude belongs to it";
+        return out_of_range("gaps_s", "gaps that begin after 0 s", advice);
     }
+    let start_s = sampling.optional_number("start_s", Bound::Finite)?;
+    let missing = sampling.optional_number("missing_fraction", Bound::Within(0.0, 1.0))?;
     Ok(Scenario {
         duration_s,
         interval_s,
         gaps_s,
-        start_s: sampling
-            .optional_number("start_s", Bound::Finite)?
-            .unwrap_or(0.0),
-        missing_fraction: sampling
-            .optional_number("missing_fraction", Bound::Within(0.0, 1.0))?
-            .unwrap_or(0.0),
+        start_s: start_s.unwrap_or(0.0),
+        missing_fraction: missing.unwrap_or(0.0),
         ..scenario
     })
 }

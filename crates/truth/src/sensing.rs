@@ -9,50 +9,29 @@ use crate::term::{Moment, Term};
 /// Errors of the three accelerometers, axes 0, 1, 2.
 #[derive(Debug)]
 pub(crate) struct Sensing<'a> {
-    parts: Vec<Part>,
+    parts: Vec<(usize, Part)>,
     terms: &'a [Term],
 }
 
-/// One error of the output \[g\].
+/// One error of the output of one accelerometer \[g\], with its size.
 #[derive(Debug)]
 enum Part {
     /// Proportional to a power of the specific force along the accelerometer.
-    Power {
-        axis: usize,
-        size: f64,
-        power: i32,
-    },
-    Temperature {
-        axis: usize,
-        size: f64,
-        of: OfTemperature,
-    },
-    Ramp {
-        axis: usize,
-        per_s: f64,
-    },
-    Wave {
-        axis: usize,
-        wave: Wave,
-    },
-    Sign {
-        axis: usize,
-        size: f64,
-    },
-    DeadZone {
-        axis: usize,
-        size: f64,
-    },
-    Nonorthogonality {
-        axes: [usize; 2],
-        size: f64,
-    },
+    Power(f64, i32),
+    Temperature(f64, OfTemperature),
+    /// Per second.
+    Ramp(f64),
+    Wave(Wave),
+    Sign(f64),
+    DeadZone(f64),
+    /// Proportional to the specific force along another axis.
+    Cross(f64, usize),
 }
 
 impl<'a> Sensing<'a> {
     pub(crate) fn new(hidden: &[Hidden], terms: &'a [Term]) -> Self {
         Self {
-            parts: hidden.iter().filter_map(Part::of).collect(),
+            parts: hidden.iter().flat_map(Part::of).collect(),
             terms,
         }
     }
@@ -60,8 +39,8 @@ impl<'a> Sensing<'a> {
     /// The outputs without noise \[g\].
     pub(crate) fn output_g(&self, moment: &Moment) -> [f64; 3] {
         let mut output = moment.accel_g;
-        for part in &self.parts {
-            part.add_to(&mut output, moment);
+        for (axis, part) in &self.parts {
+            output[*axis] += part.at(moment.accel_g[*axis], moment);
         }
         for term in self.terms {
             if let Term::Output(error) = term {
@@ -74,51 +53,38 @@ impl<'a> Sensing<'a> {
 }
 
 impl Part {
-    fn of(hidden: &Hidden) -> Option<Self> {
+    /// Each with its accelerometer.
+    fn of(hidden: &Hidden) -> Vec<(usize, Self)> {
         const DAY_S: f64 = 86_400.0;
         let size = hidden.value(0);
-        let power = |axis, power| Self::Power { axis, size, power };
-        Some(match hidden.effect() {
-            Effect::AccelBias(axis) => power(axis, 0),
-            Effect::AccelScale(axis) => power(axis, 1),
-            Effect::AccelQuadratic(axis) => power(axis, 2),
-            Effect::AccelTemperature { axis, of } => Self::Temperature { axis, size, of },
-            Effect::AccelRamp(axis) => Self::Ramp {
-                axis,
-                per_s: size / DAY_S,
-            },
-            Effect::AccelTone(axis) => Self::Wave {
-                axis,
-                wave: Wave::tone(hidden),
-            },
-            Effect::AccelSign(axis) => Self::Sign { axis, size },
-            Effect::AccelDeadZone(axis) => Self::DeadZone { axis, size },
-            Effect::Nonorthogonality(axes) => Self::Nonorthogonality { axes, size },
-            _ => return None,
-        })
+        vec![match hidden.effect() {
+            Effect::AccelBias(axis) => (axis, Self::Power(size, 0)),
+            Effect::AccelScale(axis) => (axis, Self::Power(size, 1)),
+            Effect::AccelQuadratic(axis) => (axis, Self::Power(size, 2)),
+            Effect::AccelTemperature { axis, of } => (axis, Self::Temperature(size, of)),
+            Effect::AccelRamp(axis) => (axis, Self::Ramp(size / DAY_S)),
+            Effect::AccelTone(axis) => (axis, Self::Wave(Wave::tone(hidden))),
+            Effect::AccelSign(axis) => (axis, Self::Sign(size)),
+            Effect::AccelDeadZone(axis) => (axis, Self::DeadZone(size)),
+            Effect::Nonorthogonality([i, j]) => {
+                return vec![(i, Self::Cross(size, j)), (j, Self::Cross(size, i))];
+            }
+            _ => return Vec::new(),
+        }]
     }
 
-    fn add_to(&self, output_g: &mut [f64; 3], moment: &Moment) {
-        let accel_g = moment.accel_g;
+    /// Given the specific force along the accelerometer.
+    fn at(&self, along_g: f64, moment: &Moment) -> f64 {
         match self {
-            Self::Power { axis, size, power } => {
-                output_g[*axis] += (0..*power).fold(*size, |product, _| product * accel_g[*axis]);
-            }
-            Self::Temperature { axis, size, of } => output_g[*axis] += size * of.at(moment),
-            Self::Ramp { axis, per_s } => output_g[*axis] += per_s * moment.time_s,
-            Self::Wave { axis, wave } => output_g[*axis] += wave.at(moment.time_s),
-            Self::Sign { axis, size } => {
-                output_g[*axis] += if accel_g[*axis] < 0.0 { -size } else { *size };
-            }
-            Self::DeadZone { axis, size } => {
-                if accel_g[*axis].abs() < *size {
-                    output_g[*axis] -= accel_g[*axis];
-                }
-            }
-            Self::Nonorthogonality { axes: [i, j], size } => {
-                output_g[*i] += size * accel_g[*j];
-                output_g[*j] += size * accel_g[*i];
-            }
+            Self::Power(size, power) => (0..*power).fold(*size, |product, _| product * along_g),
+            Self::Temperature(size, of) => size * of.at(moment),
+            Self::Ramp(per_s) => per_s * moment.time_s,
+            Self::Wave(wave) => wave.at(moment.time_s),
+            Self::Sign(size) if along_g < 0.0 => -size,
+            Self::Sign(size) => *size,
+            Self::DeadZone(size) if along_g.abs() < *size => -along_g,
+            Self::DeadZone(_) => 0.0,
+            Self::Cross(size, other) => size * moment.accel_g[*other],
         }
     }
 }

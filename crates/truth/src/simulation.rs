@@ -46,19 +46,15 @@ impl Truth {
     /// Platform against local east, north, up at the first row.
     #[must_use]
     pub fn platform_c_enu_first(&self) -> Attitude {
-        self.platform_c_enu
-            .first()
-            .copied()
-            .unwrap_or(Attitude::IDENTITY)
+        let first = self.platform_c_enu.first();
+        first.copied().unwrap_or(Attitude::IDENTITY)
     }
 
     /// Platform against local east, north, up at the last row.
     #[must_use]
     pub fn platform_c_enu_last(&self) -> Attitude {
-        self.platform_c_enu
-            .last()
-            .copied()
-            .unwrap_or(Attitude::IDENTITY)
+        let last = self.platform_c_enu.last();
+        last.copied().unwrap_or(Attitude::IDENTITY)
     }
 }
 
@@ -102,13 +98,10 @@ fn run(
 ) -> Result<Simulation, Error> {
     scenario.check()?;
     let temperature = scenario.temperature_course();
-    let logged: Vec<bool> = scenario
-        .grid_s()
-        .map(|time_s| scenario.logs(time_s))
-        .collect();
-    let thermal = temperature
-        .as_deref()
-        .map(|course| thermal_course(course, &logged));
+    let times_s = scenario.grid_s();
+    let logged: Vec<bool> = times_s.map(|time_s| scenario.logs(time_s)).collect();
+    let course = temperature.as_deref();
+    let thermal = course.map(|course| thermal_course(course, &logged));
     let thermal_at = |row: usize| thermal.as_ref().map_or(Thermal::default(), |all| all[row]);
     let clock = Clock::new(scenario, terms);
 
@@ -163,12 +156,11 @@ impl<'a> Clock<'a> {
     }
 
     fn true_time_s(&self, clock_s: f64) -> f64 {
-        let true_time_s = clock_s / self.seconds_per_second;
-        self.terms
-            .iter()
-            .fold(true_time_s, |time_s, term| match term {
-                Term::Time(true_time_s) => true_time_s(time_s),
-                _ => time_s,
-            })
+        let changed = |time_s: f64, term: &Term| match term {
+            Term::Time(true_time_s) => true_time_s(time_s),
+            _ => time_s,
+        };
+        let terms = self.terms.iter();
+        terms.fold(clock_s / self.seconds_per_second, changed)
     }
 }

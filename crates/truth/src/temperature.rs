@@ -86,11 +86,7 @@ impl OfTemperature {
 /// too.
 pub(crate) fn thermal_course(course: &[Point], logged: &[bool]) -> Vec<Thermal> {
     let rows = || course.iter().zip(logged);
-    let seen = || {
-        rows()
-            .filter(|(_, logged)| **logged)
-            .map(|(point, _)| point)
-    };
+    let seen = || rows().filter_map(|(point, logged)| logged.then_some(point));
     let count = seen().count().max(1) as f64;
     let mean_c = seen().map(|point| point.temperature_c).sum::<f64>() / count;
     let most = seen().fold(f64::MIN, |most, point| most.max(point.temperature_c));
@@ -98,18 +94,16 @@ pub(crate) fn thermal_course(course: &[Point], logged: &[bool]) -> Vec<Thermal> 
     let slip_k = 0.5 * LOOP * (most - least).max(0.0);
     let mut stretch_k: f64 = 0.0;
     let mut before_c = course.first().map_or(0.0, |point| point.temperature_c);
-    let mut thermal: Vec<Thermal> = course
-        .iter()
-        .map(|point| {
-            stretch_k = (stretch_k + point.temperature_c - before_c).clamp(-slip_k, slip_k);
-            before_c = point.temperature_c;
-            Thermal {
-                temperature_k: point.temperature_c - mean_c,
-                rate_k_per_h: point.rate_k_per_h,
-                hysteresis_k: stretch_k,
-            }
-        })
-        .collect();
+    let seen_by_effects = |point: &Point| {
+        stretch_k = (stretch_k + point.temperature_c - before_c).clamp(-slip_k, slip_k);
+        before_c = point.temperature_c;
+        Thermal {
+            temperature_k: point.temperature_c - mean_c,
+            rate_k_per_h: point.rate_k_per_h,
+            hysteresis_k: stretch_k,
+        }
+    };
+    let mut thermal: Vec<Thermal> = course.iter().map(seen_by_effects).collect();
     let stretched = thermal.iter().zip(logged).filter(|(_, logged)| **logged);
     let mean_k = stretched.map(|(one, _)| one.hysteresis_k).sum::<f64>() / count;
     for one in &mut thermal {

@@ -8,7 +8,7 @@ use gyrocal_instruments::{
     AveragedRecordFile, Description, average_file, parse_record, propose_map,
 };
 use gyrocal_record::{
-    Record, RecordFile, ResultTable, SourceText, printable_path, restarts, shell_quoted,
+    ClockFault, Record, RecordFile, ResultTable, SourceText, printable_path, restarts, shell_quoted,
 };
 
 use crate::measured::unusable;
@@ -60,22 +60,57 @@ fn propose(log: &Path, map: &Path) -> Result<Reply, Failure> {
     let description = Description::parse(&text, &map.display().to_string())?;
     let source = SourceText::read_as(log, description.file.encoding.as_deref())?;
     let file = parse_record(source, &description).map_err(of_log)?;
-    let record = file.record();
-    let what = format!(
-        "by it {} has {} rows over {:.1} s",
-        printable_path(log),
-        record.len(),
-        record.duration_s()
-    );
-    let mut screen = Screen::new(Standing::Good, "MAP PROPOSED", what);
-    let words = "check units, signs and the order of axes in it";
-    screen.fact("what to do", words);
-    let [log, map_words] = [log, map].map(|path| shell_quoted(&path.display().to_string()));
-    let command = format!("gyrocal diagnose {log} --columns {map_words} --bench BENCH.toml");
-    screen.then(command, "effects in the record");
+    let screen = proposed(log, map, &file);
     let mut answer = Reply::of(screen, text.clone());
     answer.write(Some(map), "the map", |_| Ok(text))?;
     Ok(answer)
+}
+
+/// What the file is by a map of it; a clock whose times do not rise with its line.
+fn proposed(log: &Path, map: &Path, file: &RecordFile) -> Screen {
+    let record = file.record();
+    let parts = restarts(&record.time_s);
+    let fault = ClockFault::of(&record.time_s, file.name());
+    let rows = format!("by it {} has {} rows", printable_path(log), record.len());
+    let (standing, what) = match (&parts, &fault) {
+        (Some(parts), _) => {
+            let parts = parts.iter().map(|rows| record.part(rows.clone()));
+            let duration_s: f64 = parts.map(|part| part.duration_s()).sum();
+            let what = format!("{rows} over {duration_s:.1} s, the clock restarts");
+            (Standing::Doubtful, what)
+        }
+        (None, Some(_)) => (Standing::Doubtful, format!("{rows}, times do not rise")),
+        (None, None) => {
+            let what = format!("{rows} over {:.1} s", record.duration_s());
+            (Standing::Good, what)
+        }
+    };
+    let mut screen = Screen::new(standing, "MAP PROPOSED", what);
+    if let Some(fault) = &fault {
+        let line = file.line(fault.row);
+        let line = line.map_or_else(String::new, |line| format!("line {line}: "));
+        // The way out of a clock that restarts is the next command.
+        let advice = match parts {
+            Some(_) => String::new(),
+            None => format!("; {}", fault.advice),
+        };
+        screen.fact("clock", format!("{line}{}{advice}", fault.found));
+    }
+    let words = "check units, signs and the order of axes in it";
+    screen.fact("what to do", words);
+    let [log, map] = [log, map].map(|path| shell_quoted(&path.display().to_string()));
+    match (parts, fault) {
+        (Some(_), _) => screen.then(
+            format!("gyrocal import csv {log} --columns {map} --split --out PART.csv"),
+            "a record of each part",
+        ),
+        (None, Some(_)) => {}
+        (None, None) => screen.then(
+            format!("gyrocal diagnose {log} --columns {map} --bench BENCH.toml"),
+            "effects in the record",
+        ),
+    }
+    screen
 }
 
 fn import(arguments: &TableArguments, out: &Path) -> Result<Reply, Failure> {

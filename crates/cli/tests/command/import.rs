@@ -385,3 +385,38 @@ fn bad_input_is_told() {
         assert!(errors.contains(message), "{message}\nis not in\n{errors}");
     }
 }
+
+#[test]
+fn a_proposal_tells_a_clock_that_restarts_with_its_line() {
+    let folder = Folder::new();
+    let rows = |order: &[u32]| {
+        let row = |time_s: &u32| {
+            let (sine, cosine) = (7.292e-5 * f64::from(*time_s)).sin_cos();
+            format!("{time_s},{:.9},{:.9},0.6\n", 0.8 * cosine, 0.8 * sine)
+        };
+        "t,ax,ay,az\n".to_owned() + &order.iter().map(row).collect::<String>()
+    };
+    let times: Vec<u32> = (0..120)
+        .map(|row| 60 * if row < 70 { 1439 + row } else { row - 70 })
+        .collect();
+    folder.put("restart.csv", rows(&times));
+    let said = unwrapped(&folder.succeed("import csv restart.csv --propose MAP.toml"));
+    // 69 and 49 intervals of a minute.
+    assert_says(&said, "120 rows over 7080.0 s, the clock restarts");
+    assert_says(
+        &said,
+        "line 72: a clock that goes back from 90480 s to 0 s: 2 parts",
+    );
+    let next = "import csv restart.csv --columns MAP.toml --split --out PART.csv";
+    assert_says(&said, next);
+    folder.succeed(next);
+    assert_eq!(folder.text("PART.2.csv").lines().count(), 51);
+    // A row out of order is no restart.
+    let mut times: Vec<u32> = (0..120).map(|row| 60 * row).collect();
+    times.swap(70, 71);
+    folder.put("order.csv", rows(&times));
+    let said = unwrapped(&folder.succeed("import csv order.csv --propose ORDER.toml"));
+    assert_says(&said, "120 rows, times do not rise");
+    assert_says(&said, "line 73: 1 row out of order");
+    assert!(!said.contains("gyrocal diagnose"), "{said}");
+}

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use crate::calibrate::unwrapped;
 use crate::folder::Folder;
 
 const DESCRIPTION: &str = "[time]\ncolumn = \"t\"\n[gyro]\ncolumns = [\"gx\", \"gy\", \"gz\"]\nunit = \
@@ -103,4 +104,35 @@ fn signs_of_the_wrong_way_round_are_told() {
     let wrong =
         folder(biased_log(0.0, 25.0, |_, z| 0.2 * z - vertical_deg_per_s)).succeed(ARGUMENTS);
     assert!(wrong.starts_with("CHECK SIGNS  "), "{wrong}");
+}
+
+#[test]
+fn an_equal_bias_that_the_logs_do_not_show_is_told_as_assumed() {
+    let folder = folder(log(25.0, |_, z| z));
+    // The same log upside down.
+    let over = |line: &str| {
+        let mut fields: Vec<String> = line.split(',').map(str::to_owned).collect();
+        if let Ok(up) = fields[6].parse::<f64>() {
+            fields[6] = (-up).to_string();
+        }
+        fields.join(",") + "\n"
+    };
+    let text = folder.text("log.csv");
+    folder.put("over.csv", text.lines().map(over).collect::<String>());
+    let told = |logs: &str| {
+        let arguments = format!("rates {logs} --log-description log.toml --json o.json");
+        let short = unwrapped(&folder.succeed_as_is(&*arguments));
+        let json: serde_json::Value = folder.json("o.json");
+        let long = unwrapped(&folder.succeed(&*arguments));
+        let words = "an equal bias in all 2 logs";
+        [
+            short.contains(&format!("assumed {words}")),
+            long.contains(&format!("Assumed: {words}")),
+            json["gyros"][2]["assumes_equal_bias"] == true,
+        ]
+    };
+    // Bias and a term along z take both logs; two of one position leave a difference.
+    assert_eq!(told("log.csv over.csv"), [true; 3]);
+    assert_eq!(told("log.csv over.csv log.csv"), [false; 3]);
+    assert_eq!(told("log.csv"), [false; 3]);
 }

@@ -28,10 +28,10 @@ pub(super) fn select(scores: &ProjectedScores, library: &[LibraryEntry]) -> Vec<
             .filter(|(_, entry)| scores.observes(&entry.signature))
             .filter_map(|(index, entry)| {
                 let columns = &entry.signature.columns;
-                let left = columns.iter().all(|column| {
-                    information[(*column, *column)]
-                        > LEAST_LEFT * scores.information[(*column, *column)]
-                });
+                let left = columns
+                    .iter()
+                    .map(|column| (*column, *column))
+                    .all(|place| information[place] > LEAST_LEFT * scores.information[place]);
                 let (own, scores) = part(&information, &score, columns);
                 let statistic = Cholesky::new(own)?.solve(&scores).dot(&scores);
                 let free = columns.len() + usize::from(entry.has_shape);
@@ -43,19 +43,10 @@ pub(super) fn select(scores: &ProjectedScores, library: &[LibraryEntry]) -> Vec<
             break;
         }
         selected.push(index);
-        project_out(
-            &mut information,
-            &mut score,
-            &library[index].signature.columns,
-        );
+        let columns = &library[index].signature.columns;
+        project_out(&mut information, &mut score, columns);
     }
-    let terms = |entry: usize| {
-        let columns = library[entry].signature.columns.iter();
-        columns.map(move |column| Term {
-            entry,
-            column: *column,
-        })
-    };
+    let terms = |entry: usize| library[entry].terms(entry);
     selected.into_iter().flat_map(terms).collect()
 }
 
@@ -64,11 +55,8 @@ fn part(
     score: &DVector<f64>,
     columns: &[usize],
 ) -> (DMatrix<f64>, DVector<f64>) {
-    let count = columns.len();
-    (
-        DMatrix::from_fn(count, count, |i, j| information[(columns[i], columns[j])]),
-        DVector::from_fn(count, |i, _| score[columns[i]]),
-    )
+    let own = information.select_rows(columns).select_columns(columns);
+    (own, score.select_rows(columns))
 }
 
 /// Projects columns out of scores and information.

@@ -26,13 +26,7 @@ pub(super) fn select(scores: &ProjectedScores, library: &[LibraryEntry]) -> Vec<
         .iter()
         .enumerate()
         .filter(|(_, entry)| scores.observes(&entry.signature))
-        .flat_map(|(index, entry)| {
-            let columns = entry.signature.columns.iter();
-            columns.map(move |column| Term {
-                entry: index,
-                column: *column,
-            })
-        })
+        .flat_map(|(index, entry)| entry.terms(index))
         .collect();
     let length = |term: usize| scores.information[(terms[term].column, terms[term].column)].sqrt();
     let gram = DMatrix::from_fn(terms.len(), terms.len(), |i, j| {
@@ -59,13 +53,9 @@ pub(super) fn select(scores: &ProjectedScores, library: &[LibraryEntry]) -> Vec<
     let Some((_, support, coefficients)) = best else {
         return Vec::new();
     };
-    let mut sized: Vec<(f64, Term)> = support
-        .iter()
-        .zip(coefficients.iter())
-        .map(|(term, coefficient)| (coefficient.abs(), terms[*term]))
-        .collect();
-    sized.sort_by(|one, other| other.0.total_cmp(&one.0));
-    sized.into_iter().map(|(_, term)| term).collect()
+    let mut sized: Vec<(&usize, &f64)> = support.iter().zip(coefficients.iter()).collect();
+    sized.sort_by(|(_, one), (_, other)| other.abs().total_cmp(&one.abs()));
+    sized.into_iter().map(|(term, _)| terms[*term]).collect()
 }
 
 /// Terms that remain at a threshold; `None` if a fit fails.
@@ -96,11 +86,9 @@ fn solve(
     if support.is_empty() {
         return Some(DVector::zeros(0));
     }
-    let count = support.len();
-    let mut own = DMatrix::from_fn(count, count, |i, j| gram[(support[i], support[j])]);
-    for i in 0..count {
+    let mut own = gram.select_rows(support).select_columns(support);
+    for i in 0..support.len() {
         own[(i, i)] += ridge;
     }
-    let moment = DVector::from_fn(count, |i, _| moment[support[i]]);
-    Some(Cholesky::new(own)?.solve(&moment))
+    Some(Cholesky::new(own)?.solve(&moment.select_rows(support)))
 }

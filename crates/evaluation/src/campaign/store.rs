@@ -46,10 +46,9 @@ impl Store {
         let mut options = File::options();
         let options = options.read(true).append(true).create(true);
         let mut file = options.open(path).map_err(&unusable)?;
+        let own = || path.to_owned();
         file.try_lock().map_err(|error| match error {
-            TryLockError::WouldBlock => EvaluationError::Busy {
-                path: path.to_owned(),
-            },
+            TryLockError::WouldBlock => EvaluationError::Busy { path: own() },
             TryLockError::Error(reason) => unusable(reason),
         })?;
         let mut content = Vec::new();
@@ -57,16 +56,12 @@ impl Store {
         file.read_to_end(&mut content).map_err(&unusable)?;
 
         let header = header_line(fingerprint).map_err(|error| unusable(error.into()))?;
-        let whole = content
-            .iter()
-            .rposition(|byte| *byte == b'\n')
-            .map_or(0, |end| end + 1);
+        let end = content.iter().rposition(|byte| *byte == b'\n');
+        let whole = end.map_or(0, |end| end + 1);
         if whole == 0 {
             // Only a torn header may be overwritten.
             if !header.starts_with(&content) {
-                return Err(EvaluationError::NoResults {
-                    path: path.to_owned(),
-                });
+                return Err(EvaluationError::NoResults { path: own() });
             }
             file.set_len(0).map_err(&unusable)?;
             file.write_all(&header).map_err(&unusable)?;
@@ -75,8 +70,7 @@ impl Store {
         if whole > 0 && whole < content.len() {
             file.set_len(whole as u64).map_err(&unusable)?;
         }
-        let path = path.to_owned();
-        Ok((Self { path, file }, known))
+        Ok((Self { path: own(), file }, known))
     }
 
     /// Appends a line made by [`encode`] in one system call: a kill leaves the line whole or torn,
@@ -142,22 +136,19 @@ fn parse<T: DeserializeOwned>(
 ) -> Result<BTreeMap<u64, Finished<T>>, EvaluationError> {
     let mut known = BTreeMap::new();
     for (index, line) in content.split_inclusive(|byte| *byte == b'\n').enumerate() {
+        let path = || path.to_owned();
         if index == 0 {
             let Ok(header) = serde_json::from_slice::<Header>(line) else {
-                return Err(EvaluationError::NoResults {
-                    path: path.to_owned(),
-                });
+                return Err(EvaluationError::NoResults { path: path() });
             };
             if let Some(difference) = expected.difference(&header.campaign) {
-                return Err(EvaluationError::OtherCampaign {
-                    path: path.to_owned(),
-                    difference,
-                });
+                let path = path();
+                return Err(EvaluationError::OtherCampaign { path, difference });
             }
             continue;
         }
         let wrong = |reason: String| EvaluationError::Line {
-            path: path.to_owned(),
+            path: path(),
             line: index + 1,
             reason,
         };

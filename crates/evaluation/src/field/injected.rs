@@ -107,20 +107,15 @@ pub(super) fn knock(seed: u64, angles_deg: [f64; 2], ramp: Option<f64>) -> Resul
     let angle_deg = between(random, angles_deg);
     let [x, y, z] = axis.map(|x| angle_deg * x / length);
     let onset_s = between(random, [0.5, 0.75]) * scenario.duration_s;
-    let parameters = [
-        ("x_deg", x),
-        ("y_deg", y),
-        ("z_deg", z),
-        ("onset_s", onset_s),
-    ];
+    let turn = [("x_deg", x), ("y_deg", y), ("z_deg", z)];
+    let parameters = [&turn[..], &[("onset_s", onset_s)]].concat();
     let knock = Hidden::new("platform.knock", &parameters)?;
-    with_effects(
-        seed,
-        scenario,
+    let (strengths, ramp) = (
         [ramp.unwrap_or(1.0); 2],
-        (false, &[knock]),
-        |_| ramp.map(|_| ("gyro_i.ramp", None)).into_iter().collect(),
-    )
+        ramp.map(|_| ("gyro_i.ramp", None)),
+    );
+    let draw = |_: &mut Draw| ramp.into_iter().collect();
+    with_effects(seed, scenario, strengths, (false, &[knock]), draw)
 }
 
 /// A record with a drift of one gyro that the catalogue does not hold, of a strength.
@@ -171,10 +166,8 @@ pub(super) fn lagging_temperature(seed: u64) -> Result {
     const LAG_S: f64 = 3.0 * 3600.0;
     let mut scenario = clean(seed, 0);
     scenario.temperature = Some(Temperature::default());
-    let logged = simulate(&scenario)?
-        .record
-        .temperature_c
-        .unwrap_or_default();
+    let logged = simulate(&scenario)?.record.temperature_c;
+    let logged = logged.unwrap_or_default();
     let share = 1.0 - libm::exp(-scenario.interval_s / LAG_S);
     let mut behind = logged.first().copied().unwrap_or(0.0);
     let follow = |value: &f64| {

@@ -124,9 +124,8 @@ fn edited(bench: &Bench, key: &str, change: impl Fn(usize, f64) -> f64) -> Resul
     let parsed = text.parse::<toml::Table>();
     let mut file = parsed.map_err(|error| error.to_string())?;
     let (table, key) = key.split_once('.').unwrap_or(("", key));
-    let table = file
-        .entry(table)
-        .or_insert(Value::Table(toml::Table::new()));
+    let empty = Value::Table(toml::Table::new());
+    let table = file.entry(table).or_insert(empty);
     let table = table.as_table_mut().ok_or("no table")?;
     match table.entry(key).or_insert(Value::Float(0.0)) {
         Value::Array(numbers) => {

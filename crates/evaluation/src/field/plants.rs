@@ -53,9 +53,8 @@ impl PlantKind {
         if self.hidden.0 == LOGGED {
             let random = &mut Draw::new(seed, EDITS);
             let sigma = self.hidden.1 * root_mean_square(&inputs);
-            inputs
-                .iter_mut()
-                .for_each(|input| *input += sigma * random.normal());
+            let inputs = inputs.iter_mut();
+            inputs.for_each(|input| *input += sigma * random.normal());
         }
         PlantRecord {
             time_s: run.time_s,

@@ -41,6 +41,11 @@ pub(super) fn axis_of(random: &mut Draw) -> usize {
     *random.one_of(&[0, 1, 2])
 }
 
+fn made(records: Vec<(Record, Bench)>) -> Made {
+    let axis = None;
+    Made { records, axis }
+}
+
 pub(super) fn of(Simulation { record, bench, .. }: Simulation, axis: Option<usize>) -> Made {
     let records = vec![(record, bench)];
     Made { records, axis }
@@ -57,11 +62,7 @@ pub(super) fn plain(seed: u64, edit: impl FnOnce(&mut Scenario)) -> Result {
 fn spoilt(seed: u64, scenario: &Scenario, spoil: impl FnOnce(&mut Broken)) -> Result {
     let mut broken = Broken::of(simulate(scenario)?, Draw::new(seed, EDITS));
     spoil(&mut broken);
-    let records = vec![(broken.record, broken.bench)];
-    Ok(Made {
-        records,
-        axis: None,
-    })
+    Ok(made(vec![(broken.record, broken.bench)]))
 }
 
 /// A clean record with a row each minute, spoilt.
@@ -125,19 +126,13 @@ pub(super) fn means(seed: u64) -> Result {
     };
     bench.accel_noise_g /= (COUNT as f64).sqrt();
     bench.initial_angles_deg = Some(truth.platform_c_enu[COUNT / 2].angles_deg());
-    let records = vec![(record, bench)];
-    Ok(Made {
-        records,
-        axis: None,
-    })
+    Ok(made(vec![(record, bench)]))
 }
 
 pub(super) fn undeclared_south(seed: u64) -> Result {
     let mut scenario = clean(seed, 0);
     scenario.latitude_deg = -scenario.latitude_deg.abs();
-    spoilt(seed, &scenario, |broken| {
-        leave_angles_out(&mut broken.bench)
-    })
+    spoilt(seed, &scenario, |all| leave_angles_out(&mut all.bench))
 }
 
 pub(super) fn near_singular(seed: u64) -> Result {
@@ -192,9 +187,8 @@ pub(super) fn clipped(seed: u64) -> Result {
 }
 
 pub(super) fn coarse_bits(seed: u64) -> Result {
-    let mut scenario = clean(seed, 0);
-    scenario.hidden = quantised(20.0 * scenario.accel_noise_g)?.to_vec();
-    Ok(of(simulate(&scenario)?, None))
+    let hidden = quantised(20.0 * clean(seed, 0).accel_noise_g)?.to_vec();
+    plain(seed, |scenario| scenario.hidden = hidden)
 }
 
 pub(super) fn clock_rate(seed: u64) -> Result {
@@ -227,10 +221,7 @@ pub(super) fn two(seed: u64, [bias, g, gg]: [f64; 3]) -> Result {
         let Simulation { record, bench, .. } = simulate(&own)?;
         records.push((record, bench));
     }
-    Ok(Made {
-        records,
-        axis: None,
-    })
+    Ok(made(records))
 }
 
 pub(super) fn second_in_other_unit(seed: u64) -> Result {

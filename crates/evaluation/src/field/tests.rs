@@ -105,10 +105,8 @@ fn kinds_make_one_record_of_a_seed() {
         "an accelerometer clipped before noise of t4",
         "the second of two records in m/s^2",
     ] {
-        let kind = FieldKind::ALL
-            .iter()
-            .find(|kind| kind.name == name)
-            .unwrap();
+        let mut kinds = FieldKind::ALL.iter();
+        let kind = kinds.find(|kind| kind.name == name).unwrap();
         let texts = |seed: u64| {
             let records = (kind.make)(seed).unwrap().records;
             let text = |(record, _): &(Record, Bench)| record.to_csv("r.csv".as_ref()).unwrap();
@@ -125,22 +123,15 @@ fn every_kind_of_a_plant_has_what_its_name_says() {
     for (place, (kind, record)) in PlantKind::ALL.iter().zip(&all).enumerate().skip(1) {
         // What is hidden under a wrong name changes nothing.
         assert!(!all[..place].contains(record), "{}", kind.name);
-        assert!(
-            record
-                .outputs
-                .iter()
-                .chain(&record.inputs)
-                .all(|value| value.is_finite())
-        );
+        let mut values = record.outputs.iter().chain(&record.inputs);
+        assert!(values.all(|value| value.is_finite()));
     }
 }
 
 fn latitude() -> Right {
-    toml::from_str(
-        "each = [['latitude', 'site.latitude']]\nnear = ['accel_i.scale']\n\
-         beside = ['accel_i.noise']\nsilent = 'faint'",
-    )
-    .unwrap()
+    let latitude = "each = [['latitude', 'site.latitude']]\nnear = ['accel_i.scale']\n\
+                    beside = ['accel_i.noise']\nsilent = 'faint'";
+    toml::from_str(latitude).unwrap()
 }
 
 fn found(id: &str, set: &[&str]) -> Name {
@@ -208,18 +199,12 @@ fn each_of_several_needs_a_finding_of_its_own_on_its_axis() {
     assert_eq!(of(vec![step(), in_set()]), Judgement::Right);
     assert_eq!(of(vec![Name::plain("unlisted")]), Judgement::Right);
     assert_eq!(of(vec![step()]), Judgement::NotSettled);
-    assert_eq!(
-        of(vec![step(), found("gyro_x.ramp", &[])]),
-        Judgement::Wrong
-    );
-    assert_eq!(
-        of(vec![found("gyro_x.step", &[])]),
-        Judgement::PhysicalAlone
-    );
-    assert_eq!(
-        two.words(),
-        "gyro_i.step, and gyro_i.step, or unlisted, in a set"
-    );
+    let with_other = vec![step(), found("gyro_x.ramp", &[])];
+    assert_eq!(of(with_other), Judgement::Wrong);
+    let on_other_axis = vec![found("gyro_x.step", &[])];
+    assert_eq!(of(on_other_axis), Judgement::PhysicalAlone);
+    let words = "gyro_i.step, and gyro_i.step, or unlisted, in a set";
+    assert_eq!(two.words(), words);
 }
 
 #[test]
@@ -230,10 +215,8 @@ fn a_wrong_latitude_is_judged_by_its_strength() {
     let (same, _) = (of("time_s +- 3600").job)(4).unwrap();
     assert!(same.strength.unwrap() < 0.1, "{same:?}");
     assert_eq!((same.judgement, same.told.len()), (Judgement::Right, 0));
-    let keys = wrong_keys();
-    let latitude = keys
-        .iter()
-        .find(|key| key.name() == "site.latitude_deg +- 0.5");
+    let mut keys = wrong_keys().into_iter();
+    let latitude = keys.find(|key| key.name() == "site.latitude_deg +- 0.5");
     let both = latitude.unwrap().record(4).unwrap();
     assert!(keys::strength(&both).unwrap().unwrap() > 20.0);
 }

@@ -105,10 +105,8 @@ pub(super) fn one_of(
 /// A rotation of the platform about the vertical at the first row.
 pub(super) fn azimuth(scenario: &Scenario, random: &mut Draw) -> Drawn {
     let kind = EffectKind::InitialState;
-    let effect = EFFECTS
-        .iter()
-        .find(|effect| effect.kind == kind)
-        .ok_or(EvaluationError::MissingEffect { kind })?;
+    let effect = EFFECTS.iter().find(|effect| effect.kind == kind);
+    let effect = effect.ok_or(EvaluationError::MissingEffect { kind })?;
     let platform_c_enu = scenario.platform().initial_platform_c_enu.matrix();
     let angle_deg = AZIMUTH_DEG * random.sign();
     let injected = InjectedEffect {
@@ -150,11 +148,8 @@ mod tests {
             let times = if single { 3.0 } else { 1.0 };
             let count = counts.get(effect.id).copied().unwrap_or(0) as f64;
             // The golden sequence is off by fewer than two in any interval.
-            assert!(
-                (count - times * even).abs() < 1.0 + times,
-                "{}: {count}",
-                effect.id
-            );
+            let off = (count - times * even).abs();
+            assert!(off < 1.0 + times, "{}: {count}", effect.id);
         }
     }
 }

@@ -82,6 +82,10 @@ impl Found {
         }
     }
 
+    fn other(&mut self, path: &str, one: &Value, what: &str) {
+        self.differs(path, f64::INFINITY, format!("{} {what}", short(one)));
+    }
+
     /// Compares what may be missing in one of both. `scale` is what the tolerance of a number is relative to, if
     /// it is not the number.
     fn either(
@@ -100,19 +104,12 @@ impl Found {
                 self.values += 1;
                 let over = over_tolerance(path, before, now, scale);
                 if over > 1.0 {
-                    self.differs(
-                        path,
-                        over,
-                        format!("{} became {}", short(before), short(now)),
-                    );
+                    let text = format!("{} became {}", short(before), short(now));
+                    self.differs(path, over, text);
                 }
             }
-            (Some(one), None) => {
-                self.differs(path, f64::INFINITY, format!("{} is missing", short(one)))
-            }
-            (None, Some(one)) => {
-                self.differs(path, f64::INFINITY, format!("{} is new", short(one)))
-            }
+            (Some(one), None) => self.other(path, one, "is missing"),
+            (None, Some(one)) => self.other(path, one, "is new"),
             (None, None) => (),
         }
     }
@@ -135,12 +132,8 @@ impl Found {
         {
             let new = now.keys().filter(|name| !before.contains_key(*name));
             for name in before.keys().chain(new) {
-                self.either(
-                    &path,
-                    before.get(name).copied(),
-                    now.get(name).copied(),
-                    None,
-                );
+                let [before, now] = [&before, &now].map(|of| of.get(name).copied());
+                self.either(&path, before, now, None);
             }
             return;
         }

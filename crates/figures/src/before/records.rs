@@ -10,7 +10,7 @@ use gyrocal_truth::plant::{Kind, Setting, simulate, with_strength};
 use gyrocal_truth::units::strapdown::UnitRun;
 use gyrocal_truth::{Scenario, Simulation};
 
-use super::results::ran;
+use super::results::told;
 use crate::any_plant::loaded;
 use crate::harness::Error;
 
@@ -45,13 +45,13 @@ pub(crate) fn make(line: &str, folder: &Path) -> Result<(), Error> {
         }
         ["platform", name, seed, run, hours, ref hidden @ ..] => {
             let run = platform_run([seed.parse()?, run.parse()?], hours.parse()?, hidden)?;
-            written(&run.record, &run.bench, folder, name, name)
+            written((&run.record, &run.bench), folder, [name, name])
         }
         ["broken", seed] => {
             let seed: u64 = seed.parse()?;
             // Of one to the next of another sort: a few seeds have some of all.
             let broken = BREAKAGES[7 * seed as usize % BREAKAGES.len()].record(seed)?;
-            written(&broken.record, &broken.bench, folder, "record", "bench")
+            written((&broken.record, &broken.bench), folder, ["record", "bench"])
         }
         ["unit", seed, rows, ramp] => {
             let ramp: f64 = ramp.parse()?;
@@ -77,9 +77,9 @@ pub(crate) fn make(line: &str, folder: &Path) -> Result<(), Error> {
             let text = format!("rate\n{}", rows.collect::<String>());
             Ok(std::fs::write(folder.join("rate.csv"), text)?)
         }
-        _ => match ran(line, folder)? {
+        _ => match told(line, folder)? {
             (0, _) => Ok(()),
-            (code, error) => Err(format!("`{line}`: exit code {code}: {error}").into()),
+            (code, [_, error]) => Err(format!("`{line}`: exit code {code}: {error}").into()),
         },
     }
 }
@@ -119,14 +119,12 @@ fn platform_run([seed, run]: [u64; 2], hours: f64, hidden: &[&str]) -> Result<Si
 }
 
 fn written(
-    record: &Record,
-    bench: &Bench,
+    (record, bench): (&Record, &Bench),
     folder: &Path,
-    name: &str,
-    bench_name: &str,
+    [csv, toml]: [&str; 2],
 ) -> Result<(), Error> {
-    record.write(&folder.join(format!("{name}.csv")))?;
-    Ok(bench.write(&folder.join(format!("{bench_name}.toml")))?)
+    record.write(&folder.join(format!("{csv}.csv")))?;
+    Ok(bench.write(&folder.join(format!("{toml}.toml")))?)
 }
 
 fn plant_record(setting: &Setting, folder: &Path) -> Result<(), Error> {

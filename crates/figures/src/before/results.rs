@@ -43,20 +43,13 @@ pub(crate) fn gyrocal(folder: &Path) -> Result<Command, Error> {
     Ok(command)
 }
 
-/// Runs a line as `gyrocal`; returns the exit code and what it says on stderr.
-pub(super) fn ran(line: &str, folder: &Path) -> Result<(i32, String), Error> {
-    let (code, [_, error]) = told(line, folder)?;
-    Ok((code, error))
-}
-
 /// Runs a line as `gyrocal`; returns the exit code and what it says on stdout and on stderr.
 pub(crate) fn told(line: &str, folder: &Path) -> Result<(i32, [String; 2]), Error> {
     let mut command = gyrocal(folder)?;
     command.args(words(line, folder)).env_remove("COLUMNS");
     let outcome = run(command.env_remove("RUST_BACKTRACE"));
-    let code = outcome
-        .code
-        .ok_or_else(|| format!("`{line}` was ended by a signal"))?;
+    let ended = || format!("`{line}` was ended by a signal");
+    let code = outcome.code.ok_or_else(ended)?;
     let told = [outcome.stdout, outcome.stderr];
     Ok((code, told.map(|text| placeless(text.trim(), folder))))
 }
@@ -77,12 +70,11 @@ pub(super) fn of(case: &Case) -> Result<Value, Error> {
     }
     let mut all = Map::new();
     for line in &case.run {
-        let command = line
-            .split(' ')
-            .take_while(|word| !word.starts_with(['@', '%', '-']));
+        let words = line.split(' ');
+        let command = words.take_while(|word| !word.starts_with(['@', '%', '-']));
         let command = command.collect::<Vec<_>>().join(" ");
         let file = format!("{}.json", command.replace(' ', "-"));
-        let (code, error) = ran(&format!("{line} --json %{file}"), folder.path())?;
+        let (code, [_, error]) = told(&format!("{line} --json %{file}"), folder.path())?;
         let mut result = match std::fs::read_to_string(folder.path().join(file)) {
             Ok(text) => serde_json::from_str(&placeless(&text, folder.path()))?,
             // What a panic says depends on the versions of packages.

@@ -1,6 +1,8 @@
 //! Information of a second record at another attitude.
 
-use gyrocal_calibration::{Options, Run, calibrate_runs};
+use gyrocal_calibration::{Options, calibrate_runs};
+use gyrocal_evaluation::run_of;
+use gyrocal_statistics::mean;
 use gyrocal_truth::{Coefficients, InitialAttitude, Scenario, simulate};
 
 use crate::harness::{CALIBRATION, Context, Error, Figure, Population, Row, of};
@@ -11,12 +13,13 @@ const OTHER_DEG: [f64; 3] = [90.0, 45.0, 0.0];
 pub(super) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
     let sources = of(CALIBRATION, &[file!()]);
     let population = Population::new("second attitude", [1, 20, 2], sources, ratios);
-    let name =
-        |over: &str| format!("sigma with a second attitude over sigma of {over}, geometric mean");
+    let row = |over: &str, which: usize| {
+        let name = format!("sigma with a second attitude over sigma of {over}, geometric mean");
+        Row::mean(name, move |of: &[f64; 2]| Some(of[which]))
+    };
     let rows = [
-        Row::mean(name("one"), |of: &[f64; 2]| Some(of[0]))
-            .at_most(0.71, "twice the data of one kind give 0.71"),
-        Row::mean(name("as long a record"), |of: &[f64; 2]| Some(of[1]))
+        row("one", 0).at_most(0.71, "twice the data of one kind give 0.71"),
+        row("as long a record", 1)
             .at_most(1.0, "another attitude is not worse than more of the same"),
     ];
     context.measure(&population, &rows)
@@ -47,13 +50,7 @@ fn log_sigma(records: &[(u64, f64, [f64; 3])]) -> Result<f64, Error> {
         })
     });
     let simulations = simulations.collect::<Result<Vec<_>, _>>()?;
-    let runs = simulations.iter().map(|simulation| Run {
-        record: &simulation.record,
-        bench: &simulation.bench,
-    });
+    let runs = simulations.iter().map(run_of);
     let found = calibrate_runs(&runs.collect::<Vec<_>>(), &Options::default(), |_| ())?;
-    Ok((0..9)
-        .map(|i| 0.5 * found.covariance[i][i].ln())
-        .sum::<f64>()
-        / 9.0)
+    Ok(mean((0..9).map(|i| 0.5 * found.covariance[i][i].ln())))
 }

@@ -10,9 +10,7 @@ use gyrocal_truth::{Coefficients, Hidden, InitialAttitude, Scenario, Simulation,
 use serde::{Deserialize, Serialize};
 
 use super::names;
-use crate::harness::{
-    CALIBRATION, COVERAGE, COVERAGE_REASON, Context, Error, Figure, Population, Row, Sources, of,
-};
+use crate::harness::{CALIBRATION, Context, Error, Figure, Population, Row, Sources, of};
 
 const SOURCES: Sources = of(CALIBRATION, &[file!()]);
 
@@ -38,26 +36,22 @@ pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
     let mut figures = context.measure(&trials(drawn, 2_130_000, from), &of_drawn(drawn))?;
     let from = TrueCoefficients::Fixed(Coefficients::PAPER_LIKE);
     figures.extend(context.measure(&trials(fixed, 2_140_000, from), &of_fixed(fixed))?);
-    for (name, first, turn_on) in [
-        ("four runs of a stable platform", 2_150_000, 0.0),
-        (
-            "four runs, turn-ons scatter by 0.05 deg/h undeclared",
-            2_160_000,
-            TURN_ON_DEG_PER_H,
-        ),
-    ] {
+    let stable = "four runs of a stable platform";
+    let scattered = "four runs, turn-ons scatter by 0.05 deg/h undeclared";
+    let level = "the level of the test, of all coefficients together";
+    let spreads = |name, first, turn_on| {
         let job = move |seed| SpreadTrial::of(seed, RUNS_OF_PLATFORM, turn_on);
+        Population::new(name, [first, 500, 6], SOURCES, job)
+    };
+    let row = |name| {
         let what = format!("{name}: share with a scatter larger than the uncertainties");
-        let row = Row::share(what, |trial: &SpreadTrial| Some(trial.is_larger));
-        let row = match turn_on > 0.0 {
-            false => row.at_most(0.01, "the level of the test, of all coefficients together"),
-            true => row.at_least(0.99, "ten times the uncertainty cannot be missed"),
-        };
-        figures.extend(context.measure(
-            &Population::new(name, [first, 500, 6], SOURCES, job),
-            &[row],
-        )?);
-    }
+        Row::share(what, |trial: &SpreadTrial| Some(trial.is_larger))
+    };
+    let row_of_stable = row(stable).at_most(0.01, level);
+    let row = row(scattered).at_least(0.99, "ten times the uncertainty cannot be missed");
+    figures.extend(context.measure(&spreads(stable, 2_150_000, 0.0), &[row_of_stable])?);
+    let scattered = spreads(scattered, 2_160_000, TURN_ON_DEG_PER_H);
+    figures.extend(context.measure(&scattered, &[row])?);
     Ok(figures)
 }
 
@@ -66,21 +60,16 @@ fn of_drawn(name: &str) -> Vec<Row<'static, BudgetTrial>> {
     let held = |trial: &BudgetTrial, i: usize| trial.error[i].abs() <= trial.expanded[i];
     let of_all = move |trial: &BudgetTrial| (0..9).map(|i| held(trial, i)).collect::<Vec<_>>();
     let all = format!("{name}: share of all 95 % intervals that hold the truth");
-    let mut rows = vec![Row::each(all, of_all).between(COVERAGE, COVERAGE_REASON)];
+    let mut rows = vec![Row::each(all, of_all).of_coverage()];
     for (i, coefficient) in names() {
         let square = move |trial: &BudgetTrial| Some((trial.error[i] / trial.combined[i]).powi(2));
         let name = |what: &str| format!("{name}: {coefficient}: {what}");
+        let held = move |trial: &BudgetTrial| Some(held(trial, i));
+        let squares = name("mean square error / combined uncertainty squared");
+        let intervals = name("share of 95 % intervals that hold the truth");
         rows.extend([
-            Row::mean(
-                name("mean square error / combined uncertainty squared"),
-                square,
-            )
-            .between(SQUARES, SQUARES_REASON),
-            Row::share(
-                name("share of 95 % intervals that hold the truth"),
-                move |trial| Some(held(trial, i)),
-            )
-            .between(COVERAGE, COVERAGE_REASON),
+            Row::mean(squares, square).between(SQUARES, SQUARES_REASON),
+            Row::share(intervals, held).of_coverage(),
         ]);
     }
     rows

@@ -28,12 +28,10 @@ pub(super) fn figures() -> Result<Vec<Figure>, Error> {
             figures.push(Figure::note(&format!("{rows} samples"), time));
             continue;
         }
-        figures.push(with_steps(
-            Figure::at_most("a million samples", 30.0, seconds, "s"),
-            steps,
-        ));
+        let time = Figure::at_most("a million samples", 30.0, seconds, "s");
         let name = "a million samples: peak memory of the process";
-        figures.push(Figure::at_most(name, 500.0, peak.read_mb(), "MB"));
+        let memory = Figure::at_most(name, 500.0, peak.read_mb(), "MB");
+        figures.extend([with_steps(time, steps), memory]);
     }
     let largest = per_pass_ns.iter().copied().fold(0.0, f64::max);
     let least = per_pass_ns.iter().copied().fold(f64::INFINITY, f64::min);

@@ -34,9 +34,7 @@ pub(super) fn of(families: &[&Effect]) -> String {
 /// The entry of a family, by its first effect.
 fn entry(first: &Effect) -> String {
     let screen = explained(first);
-    let family = EFFECTS
-        .iter()
-        .filter(|effect| effect.family == first.family);
+    let family = EFFECTS.iter().filter(|of| of.family == first.family);
     let ids: Vec<String> = family.map(|effect| format!("`{}`", effect.id)).collect();
     let mut text = format!(
         "### `{}`\n\n`{}`: {}.\n\n| | |\n|---|---|\n",
@@ -47,18 +45,15 @@ fn entry(first: &Effect) -> String {
     }
     let letters = |words: &str| words.replace(' ', "");
     for fact in &screen.facts {
-        let words = if letters(&fact.words) == letters(first.formula) {
-            format!("`{}`", fact.words)
-        } else {
-            fact.words.clone()
+        let words = match letters(&fact.words) == letters(first.formula) {
+            true => format!("`{}`", fact.words),
+            false => fact.words.clone(),
         };
         text += &format!("| {} | {} |\n", fact.label, words.replace('|', "\\|"));
     }
     if signature::has_picture(first) {
-        text += &format!(
-            "\n![signature of {}](pictures/catalogue/{}.svg)",
-            first.id, first.family
-        );
+        let (id, family) = (first.id, first.family);
+        text += &format!("\n![signature of {id}](pictures/catalogue/{family}.svg)");
     }
     text.trim_end().to_owned()
 }

@@ -52,13 +52,10 @@ pub(super) fn describe(values: &mut Values) -> Result<(), Error> {
     let scenario = scenario()?;
     values.put("days", format::short(scenario.duration_s / 86_400.0, 3));
     values.put("latitude", format::short(scenario.latitude_deg, 3));
-    let angles = match scenario.initial {
-        InitialAttitude::AnglesDeg(angles) => {
-            angles.map(|angle| format!("{angle}°")).to_vec().join(", ")
-        }
-        _ => return Err("the scenario of the pictures has no attitude".into()),
+    let InitialAttitude::AnglesDeg(angles) = scenario.initial else {
+        return Err("the scenario of the pictures has no attitude".into());
     };
-    values.put("angles", angles);
+    values.put("angles", angles.map(|angle| format!("{angle}°")).join(", "));
     values.put("visible", format::short(VISIBLE_SIGMAS, 2));
     Ok(())
 }
@@ -93,10 +90,8 @@ fn is_visible(shown: &Chart, sigma_g: f64) -> bool {
 /// The effect at `factor` times its typical size.
 fn drawn(effect: &Effect, scenario: &Scenario, factor: f64) -> Result<Chart, Error> {
     let values = values(effect, scenario, factor);
-    let named: Vec<(&str, f64)> = values
-        .iter()
-        .map(|(name, value, _)| (name.as_str(), *value))
-        .collect();
+    let named = values.iter().map(|(name, value, _)| (&**name, *value));
+    let named: Vec<(&str, f64)> = named.collect();
     let quiet = noise_of(effect, scenario);
     let simulation = simulate(&Scenario {
         hidden: vec![Hidden::new(effect.id, &named)?],
@@ -109,6 +104,7 @@ fn drawn(effect: &Effect, scenario: &Scenario, factor: f64) -> Result<Chart, Err
         format!("{name} {value} {unit}").trim_end().to_owned()
     });
     let sizes: Vec<String> = sizes.collect();
+    let sigma_g = scenario.accel_noise_g;
     let (residual_g, label) = if effect.is_nominal {
         let without = simulate(&quiet)?;
         let change = difference(&simulation.record.accel_g, &without.record.accel_g);
@@ -120,12 +116,7 @@ fn drawn(effect: &Effect, scenario: &Scenario, factor: f64) -> Result<Chart, Err
     Ok(Chart {
         title: format!("{}: {}", effect.id, sizes.join(", ")),
         caption: effect.name.to_owned(),
-        ..chart(
-            &simulation.record,
-            &residual_g,
-            label,
-            scenario.accel_noise_g,
-        )
+        ..chart(&simulation.record, &residual_g, label, sigma_g)
     })
 }
 
@@ -166,11 +157,7 @@ fn chart(record: &Record, residual_g: &[[f64; 3]], label: &str, sigma_g: f64) ->
 
 /// The scenario with its noise for effects of the noise of the readings, without it for all others.
 fn noise_of(effect: &Effect, scenario: &Scenario) -> Scenario {
-    let noise = if matches!(effect.kind, EffectKind::Noise(_)) {
-        1.0
-    } else {
-        0.0
-    };
+    let noise = f64::from(matches!(effect.kind, EffectKind::Noise(_)));
     Scenario {
         accel_noise_g: noise * scenario.accel_noise_g,
         gyro_noise_deg_per_h: noise * scenario.gyro_noise_deg_per_h,
@@ -220,11 +207,8 @@ fn noise_values(property: NoiseProperty, scenario: &Scenario) -> Vec<(String, f6
 /// Measured less simulated specific force of the nominal model at its best fit, with the noise that
 /// the scenario declares.
 fn left_by_the_fit(simulation: &Simulation, scenario: &Scenario) -> Result<Vec<[f64; 3]>, Error> {
-    let bench = scenario.bench();
-    let run = Run {
-        record: &simulation.record,
-        bench: &bench,
-    };
+    let (record, bench) = (&simulation.record, &scenario.bench());
+    let run = Run { record, bench };
     let fit = FittedPlatform::nominal_once(&run, &Options::default(), &NoiseModel::default())?;
     Ok(difference(&simulation.record.accel_g, &fit.free_run_g()?))
 }

@@ -88,14 +88,9 @@ struct Audited {
 }
 
 pub(super) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
-    let alarm = Row::bound(
-        "clean records: alarms of the noise audit, one-sided 95 % upper bound",
-        |one: &Audited| !one.found.is_empty(),
-    )
-    .at_most(
-        0.01,
-        "0.25 % are promised: of 2000 five are due, and 12 within the bound",
-    );
+    let name = "clean records: alarms of the noise audit, one-sided 95 % upper bound";
+    let level = "0.25 % are promised: of 2000 five are due, and 12 within the bound";
+    let alarm = Row::bound(name, |one: &Audited| !one.found.is_empty()).at_most(0.01, level);
     let mut figures = context.measure(&audits("clean", CLEAN, Fault::None, None), &[alarm])?;
     for (name, fault) in KINDS {
         let audits = audits(name, EACH, fault, None);
@@ -117,15 +112,11 @@ fn audits(
     fault: Fault,
     term: Option<fn() -> Term>,
 ) -> Population<'static, Audited> {
-    Population::new(
-        format!("audit {name}"),
-        [0, full, small],
-        SOURCES,
-        move |number| {
-            let terms: Vec<Term> = term.iter().map(|make| make()).collect();
-            audited(&faulty_record(&three_days(), number, fault, &terms))
-        },
-    )
+    let job = move |number| {
+        let terms: Vec<Term> = term.iter().map(|make| make()).collect();
+        audited(&faulty_record(&three_days(), number, fault, &terms))
+    };
+    Population::new(format!("audit {name}"), [0, full, small], SOURCES, job)
 }
 
 /// Three days with a row each minute, at any latitude and attitude, with drift.
@@ -142,11 +133,9 @@ fn of_kind(name: &str, fault: Fault) -> Vec<Row<'static, Audited>> {
     };
     let expected = expected(fault);
     let right = move |one: &Audited| Some(one.found == expected);
+    let no_others = format!("{name}: the right noise findings, and no others");
     let mut rows = vec![
-        Row::share(
-            format!("{name}: the right noise findings, and no others"),
-            right,
-        ),
+        Row::share(no_others, right),
         Row::share(format!("{name}: {near}"), |one: &Audited| Some(one.sized)),
     ];
     if matches!(fault, Fault::Outliers(..)) {
@@ -164,13 +153,14 @@ fn alarms(audited: &[Audited]) -> String {
         *named.entry(effect).or_default() += 1;
     }
     let named = named
-        .into_iter()
+        .iter()
         .map(|(effect, count)| format!("{effect} {count}"));
     let named: Vec<String> = named.collect();
     let count = audited.iter().filter(|one| !one.found.is_empty()).count();
+    let share = format!("{count} of {}", audited.len());
     match named.as_slice() {
-        [] => format!("{count} of {}", audited.len()),
-        named => format!("{count} of {} ({})", audited.len(), named.join(", ")),
+        [] => share,
+        named => format!("{share} ({})", named.join(", ")),
     }
 }
 
@@ -231,11 +221,8 @@ fn expected(fault: Fault) -> Vec<&'static str> {
         let property = truth(fault).map(|(property, ..)| EffectKind::Noise(property));
         Some(effect.kind) == property && matches!(effect.enters, Enters::Outputs(_))
     };
-    let mut ids: Vec<&str> = EFFECTS
-        .iter()
-        .filter(is_it)
-        .map(|effect| effect.id)
-        .collect();
+    let ids = EFFECTS.iter().filter(is_it).map(|effect| effect.id);
+    let mut ids: Vec<&str> = ids.collect();
     ids.sort_unstable();
     ids
 }
@@ -268,15 +255,13 @@ fn wholes() -> Population<'static, Whole> {
 
 fn of_wholes() -> [Row<'static, Whole>; 2] {
     let name = |what: &str| format!("rounded readings, outliers: whole diagnoses with {what}");
+    let is_right = |one: &Whole| Some(one.is_right);
     [
         Row::share(name("a physical finding"), |one: &Whole| {
             Some(one.is_physical)
         })
         .at_most(0.01, "the level is 1 %"),
-        Row::share(
-            name("the right noise findings, and no others"),
-            |one: &Whole| Some(one.is_right),
-        )
-        .at_least(RIGHT, RIGHT_REASON),
+        Row::share(name("the right noise findings, and no others"), is_right)
+            .at_least(RIGHT, RIGHT_REASON),
     ]
 }

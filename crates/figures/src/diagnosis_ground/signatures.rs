@@ -15,7 +15,7 @@ use gyrocal_truth::{Population, Scenario, Temperature, simulate};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-use crate::harness::{Error, Figure};
+use crate::harness::{Context, Error, Figure};
 
 /// Seed of the population, and how many scenarios of it are compared.
 const POPULATION: u64 = 8;
@@ -65,8 +65,8 @@ struct Probe {
     unit: f64,
 }
 
-pub(super) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
-    let scenarios = if small { FEW } else { SCENARIOS };
+pub(super) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
+    let scenarios = context.size.records(SCENARIOS, FEW);
     let of = |number| {
         compare(&Scenario {
             duration_s: 3.0 * 86_400.0,
@@ -83,14 +83,10 @@ pub(super) fn figures(small: bool) -> Result<Vec<Figure>, Error> {
         let errors: Vec<(f64, &str)> = errors.collect();
         let worst = errors.iter().max_by(|a, b| a.0.total_cmp(&b.0));
         let (error, of) = worst.copied().unwrap_or((f64::NAN, "none"));
-        Figure {
-            measured: format!("{error:.1e} ({of})"),
-            ..Figure::within(name, [f64::NEG_INFINITY, target], error)
-        }
-        .over(
-            errors.len(),
-            format!("population {POPULATION}, 0 to {}", scenarios - 1),
-        )
+        let told = format!("{error:.1e} ({of})");
+        let figure = Figure::told(name, &format!("<= {target}"), told, error <= target);
+        let seeds = format!("population {POPULATION}, 0 to {}", scenarios - 1);
+        figure.over(errors.len(), seeds)
     };
     let own = |one: &Compared| Some(one.error);
     let name = "signatures against the simulation: worst difference over norm, whitened";
@@ -117,20 +113,17 @@ fn compare(scenario: &Scenario) -> Result<Vec<Compared>, Error> {
     };
     let record = simulate(&quiet)?.record;
     let bench = scenario.bench();
-    let run = Run {
-        record: &record,
-        bench: &bench,
-    };
+    let (record, bench) = (&record, &bench);
+    let run = Run { record, bench };
     let nominal = FittedPlatform::nominal(&run, &Options::default(), &NoiseModel::default())?;
+    let shapes = (0..SHAPES.len()).map(|index| held_shape(index, record));
     let shaped = ModelExtension {
-        shapes: (0..SHAPES.len())
-            .map(|index| held_shape(index, &record))
-            .collect(),
+        shapes: shapes.collect(),
         ..nominal.extension().clone()
     };
     let fitted = nominal.refitted(&shaped)?;
     let mut columns = SignatureColumns::default();
-    let probes = probes(&record, &mut columns)?;
+    let probes = probes(record, &mut columns)?;
     let mut further = columns.further;
     let first = PARAMETERS.len() + further.len();
     for probe in &probes {
@@ -194,11 +187,9 @@ fn held_value(role: Role, record: &Record) -> f64 {
 
 /// The same of a shape of the model.
 fn held_shape(index: usize, record: &Record) -> f64 {
-    EFFECTS
-        .iter()
-        .filter_map(Effect::shape)
-        .find(|own| own.role.shape_index() == Some(index))
-        .map_or(1.0, |own| held_value(own.role, record))
+    let mut shapes = EFFECTS.iter().filter_map(Effect::shape);
+    let own = shapes.find(|own| own.role.shape_index() == Some(index));
+    own.map_or(1.0, |own| held_value(own.role, record))
 }
 
 /// Every parameter of the catalogue, onsets and time constants held, and the columns that stand for steps, warm-ups,
@@ -235,20 +226,14 @@ fn probes(record: &Record, columns: &mut SignatureColumns) -> Result<Vec<Probe>,
         for shape in shapes {
             let signature = columns.signature(effect, record, shape);
             let signature = signature.ok_or("an effect without a signature")?;
-            let unit = signature.scale;
-            probes.extend(
-                signature
-                    .columns
-                    .into_iter()
-                    .enumerate()
-                    .map(|(size, column)| Probe {
-                        effect,
-                        size,
-                        shape,
-                        column,
-                        unit,
-                    }),
-            );
+            let columns = signature.columns.into_iter().enumerate();
+            probes.extend(columns.map(|(size, column)| Probe {
+                effect,
+                size,
+                shape,
+                column,
+                unit: signature.scale,
+            }));
         }
     }
     Ok(probes)
@@ -256,14 +241,10 @@ fn probes(record: &Record, columns: &mut SignatureColumns) -> Result<Vec<Probe>,
 
 impl Probe {
     fn name(&self) -> String {
-        let size = self
-            .effect
-            .sizes()
-            .nth(self.size)
-            .map_or("", |size| size.name);
-        let shape = self
-            .shape
-            .map_or(String::new(), |shape| format!(" at {shape:.4}"));
+        let size = self.effect.sizes().nth(self.size);
+        let size = size.map_or("", |size| size.name);
+        let shape = self.shape.map(|shape| format!(" at {shape:.4}"));
+        let shape = shape.unwrap_or_default();
         format!("{} {size}{shape}", self.effect.id)
     }
 }
@@ -278,19 +259,14 @@ fn change_g(quiet: &Scenario, probe: &Probe) -> Result<Vec<[f64; 3]>, Error> {
             sizes,
             shape: probe.shape,
         };
-        let hidden = vec![injected.to_hidden()?];
-        let hiding = Scenario {
-            hidden,
-            ..quiet.clone()
-        };
+        let mut hiding = quiet.clone();
+        hiding.hidden = vec![injected.to_hidden()?];
         Ok(simulate(&hiding)?.record.accel_g)
     };
     let difference_g = |size: f64| -> Result<Vec<[f64; 3]>, Error> {
         let (above, below) = (readings_g(size)?, readings_g(-size)?);
-        let pairs = above.iter().zip(&below);
-        Ok(pairs
-            .map(|(a, b)| core::array::from_fn(|axis| 0.5 * (a[axis] - b[axis])))
-            .collect())
+        let half = |(a, b): (&[f64; 3], &[f64; 3])| [0, 1, 2].map(|axis| 0.5 * (a[axis] - b[axis]));
+        Ok(above.iter().zip(&below).map(half).collect())
     };
     let moved_g = |change: &[[f64; 3]]| {
         let values = change.iter().flatten().filter(|value| !value.is_nan());

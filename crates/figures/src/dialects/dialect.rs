@@ -4,7 +4,6 @@ use std::fmt::Write as _;
 
 use gyrocal_record::Record;
 use jiff::Timestamp;
-use jiff::civil::DateTime;
 use jiff::tz::Offset;
 use serde::Deserialize;
 
@@ -119,33 +118,25 @@ impl Dialect {
             }
             let mut fields = self.time(first_s + record.time_s[row] - record.time_s[0], first_s);
             for (axis, force) in record.accel_g[row].iter().enumerate() {
-                fields.push(
-                    match self.missing.as_ref().filter(|_| row % 50 == 7 + axis) {
-                        Some(word) => word.clone(),
-                        None => self.number(force * self.scale + self.zero, self.decimals),
-                    },
-                );
+                let missing = self.missing.clone().filter(|_| row % 50 == 7 + axis);
+                let number = || self.number(force * self.scale + self.zero, self.decimals);
+                fields.push(missing.unwrap_or_else(number));
             }
-            if let (Some([factor, offset]), Some(celsius)) =
-                (self.temperature, &record.temperature_c)
-            {
-                fields.push(self.number(celsius[row] * factor + offset, 2));
-            }
+            let temperature = self.temperature.zip(record.temperature_c.as_ref());
+            fields.extend(
+                temperature.map(|([factor, offset], celsius)| {
+                    self.number(celsius[row] * factor + offset, 2)
+                }),
+            );
             text += &self.line(&fields);
         }
         text
     }
 
     fn line(&self, fields: &[String]) -> String {
-        let quote = |field: &String| {
-            if self.quoted {
-                format!("\"{field}\"")
-            } else {
-                field.clone()
-            }
-        };
-        let fields: Vec<String> = fields.iter().map(quote).collect();
-        fields.join(&self.separator) + &self.behind + &self.line_end
+        let mark = if self.quoted { "\"" } else { "" };
+        let fields = fields.iter().map(|field| format!("{mark}{field}{mark}"));
+        fields.collect::<Vec<_>>().join(&self.separator) + &self.behind + &self.line_end
     }
 
     fn header(&self) -> String {
@@ -155,10 +146,9 @@ impl Dialect {
         let (times, force, temperature) = &self.titles;
         let mut titles: Vec<String> = times.iter().chain(force).cloned().collect();
         titles.extend(self.temperature.map(|_| temperature.clone()));
-        let sign = if self.comment.is_empty() || self.units.is_some() {
-            String::new()
-        } else {
-            format!("{} ", self.comment)
+        let sign = match self.comment.is_empty() || self.units.is_some() {
+            true => String::new(),
+            false => format!("{} ", self.comment),
         };
         let mut text = sign + &self.line(&titles);
         if let Some([time, force, temperature]) = &self.units {
@@ -172,11 +162,7 @@ impl Dialect {
 
     fn number(&self, value: f64, decimals: usize) -> String {
         let text = format!("{value:.decimals$}");
-        if self.decimal_comma {
-            text.replace('.', ",")
-        } else {
-            text
-        }
+        text.replace('.', if self.decimal_comma { "," } else { "." })
     }
 
     /// Fields of a time \[s since 1970\].
@@ -191,18 +177,10 @@ impl Dialect {
                 vec![self.number((time_s - origin_s) / unit_s, *decimals)]
             }
             Times::Fields(formats, ahead_h) => {
-                let stamp = Timestamp::from_nanosecond((time_s * 1e3).round() as i128 * 1_000_000)
-                    .unwrap_or_default();
-                let offset = Offset::constant(*ahead_h);
-                let civil: DateTime = offset.to_datetime(stamp);
-                let zoned = offset
-                    .to_timestamp(civil)
-                    .map(|at| at.to_zoned_datetime(offset.to_time_zone()));
-                let write = |format: &String| {
-                    zoned
-                        .as_ref()
-                        .map_or_else(|_| String::new(), |at| at.strftime(format).to_string())
-                };
+                let stamp = Timestamp::from_nanosecond((time_s * 1e3).round() as i128 * 1_000_000);
+                let zone = Offset::constant(*ahead_h).to_time_zone();
+                let zoned = stamp.unwrap_or_default().to_zoned_datetime(zone);
+                let write = |format: &String| zoned.strftime(format).to_string();
                 formats.iter().map(write).collect()
             }
             Times::Gps => {
@@ -218,12 +196,9 @@ impl Dialect {
 
     fn encoded(&self, text: &str) -> Vec<u8> {
         let utf16 = |text: &str, big: bool| -> Vec<u8> {
-            let bytes = |unit: u16| {
-                if big {
-                    unit.to_be_bytes()
-                } else {
-                    unit.to_le_bytes()
-                }
+            let bytes = |unit: u16| match big {
+                true => unit.to_be_bytes(),
+                false => unit.to_le_bytes(),
             };
             text.encode_utf16().flat_map(bytes).collect()
         };
@@ -235,10 +210,12 @@ impl Dialect {
             Encoding::Utf16Big => utf16(&marked, true),
             Encoding::Utf16 => utf16(text, false),
             // The first 256 characters of Unicode are those of Latin-1.
-            Encoding::Latin1 => text
-                .chars()
-                .map(|sign| u8::try_from(sign).unwrap_or(b'?'))
-                .collect(),
+            Encoding::Latin1 => {
+                let signs = text.chars();
+                signs
+                    .map(|sign| u8::try_from(sign).unwrap_or(b'?'))
+                    .collect()
+            }
         }
     }
 }

@@ -41,19 +41,16 @@ pub(super) fn drawn(of: &Dialects, draw: &mut Draw) -> Dialect {
         ("temp_K", "K", [1.0, 273.15]),
     ]);
     let text = str::to_owned;
+    let encodings = {
+        use Encoding::{Latin1, Utf8, Utf8Mark, Utf16, Utf16Mark};
+        [Utf8, Utf8, Utf8Mark, Utf16Mark, Utf16, Latin1]
+    };
     let mut drawn = Dialect {
         name: text("drawn"),
         separator: text(separator),
         decimal_comma,
         quoted,
-        encoding: *draw.one_of(&[
-            Encoding::Utf8,
-            Encoding::Utf8,
-            Encoding::Utf8Mark,
-            Encoding::Utf16Mark,
-            Encoding::Utf16,
-            Encoding::Latin1,
-        ]),
+        encoding: *draw.one_of(&encodings),
         line_end: text(draw.one_of::<&str>(&["\n", "\r\n", "\n", "\r"])),
         times: time.form.clone(),
         header: has_header,

@@ -15,33 +15,15 @@ const PACKAGE: &str = "crates/c-api";
 const LIBRARY: &str = "libgyrocal_c.a";
 /// Set to make the header instead of comparing it.
 const WRITE: &str = "GYROCAL_WRITE_HEADER";
-const WARNINGS: [&str; 6] = [
-    "-std=c11",
-    "-Wall",
-    "-Wextra",
-    "-Werror",
-    "-Wconversion",
-    "-O2",
-];
+const FLAGS: &str = "-std=c11 -Wall -Wextra -Werror -Wconversion -O2";
 /// Those of the target, where nothing is linked but what the compiler calls.
-const ON_TARGET: [&str; 9] = [
-    "-mcpu=cortex-m4",
-    "-mthumb",
-    "-mfloat-abi=hard",
-    "-mfpu=fpv4-sp-d16",
-    "-ffreestanding",
-    "-nostdlib",
-    "-ffunction-sections",
-    "-fdata-sections",
-    "-lgcc",
-];
+const ON_TARGET: &str = "-mcpu=cortex-m4 -mthumb -mfloat-abi=hard -mfpu=fpv4-sp-d16 \
+                         -ffreestanding -nostdlib -ffunction-sections -fdata-sections -lgcc";
 
 /// Figures of the interface; `expected` are the lines that the Rust filter prints on the record.
 pub(super) fn figures(tools: Option<&Tools>, expected: &[String]) -> Result<Vec<Figure>, Error> {
-    let mut figures = vec![Figure::truth(
-        "C: the committed header is that of cbindgen",
-        header()?,
-    )];
+    let name = "C: the committed header is that of cbindgen";
+    let mut figures = vec![Figure::truth(name, header()?)];
     let directory = root().join("target/firmware/c");
     std::fs::create_dir_all(&directory)?;
     let record = Record::read(&root().join(RECORD))?;
@@ -49,35 +31,27 @@ pub(super) fn figures(tools: Option<&Tools>, expected: &[String]) -> Result<Vec<
     let library = build_on_host(PACKAGE, &["--release"])?.join(LIBRARY);
     let program = directory.join("host");
     let compiler = std::env::var_os("CC").unwrap_or_else(|| "cc".into());
-    built(compiler, &[], ["host.c".as_ref(), &library], &program)?;
+    built(compiler, "", ["host.c".as_ref(), &library], &program)?;
     let host = output(&mut Command::new(&program))?;
-    figures.push(equal(
-        "C: all bits on the host are those of Rust",
-        &host,
-        expected,
-    ));
+    figures.push(equal("host", &host, expected));
     if let Some(tools) = tools {
         let library = tools.build(PACKAGE, &[])?.join(LIBRARY);
         let program = directory.join("target.elf");
         let memory = root().join("examples/controller/board/memory.x");
-        let linked = format!("-T{}", memory.display());
-        let flags = [&ON_TARGET[..], &[&linked]].concat();
+        let flags = format!("{ON_TARGET} -T{}", memory.display());
         let parts = ["target.c".as_ref(), library.as_path()];
         built("arm-none-eabi-gcc".into(), &flags, parts, &program)?;
         let target = tools.run(&program, "replay")?;
-        figures.push(equal(
-            "C: all bits on the target are those of Rust",
-            &target,
-            expected,
-        ));
+        figures.push(equal("target", &target, expected));
         figures.push(code(tools, &program, record.accel_g.len())?);
     }
     Ok(figures)
 }
 
-fn equal(name: &str, printed: &str, expected: &[String]) -> Figure {
+fn equal(machine: &str, printed: &str, expected: &[String]) -> Figure {
+    let name = format!("C: all bits on the {machine} are those of Rust");
     let lines: Vec<&str> = printed.lines().collect();
-    Figure::truth(name, lines == expected && lines.len() > 19).over(1, RECORD)
+    Figure::truth(&name, lines == expected && lines.len() > 19).over(1, RECORD)
 }
 
 /// Whether the committed header is what cbindgen makes of the package.
@@ -95,19 +69,15 @@ fn header() -> Result<bool, Error> {
 
 /// The record as an array of C, in hexadecimal, so that no compiler rounds it.
 fn write_record(record: &Record, directory: &Path) -> Result<(), Error> {
-    let rows: Vec<String> = record
-        .accel_g
-        .iter()
-        .map(|row| {
-            let numbers = row.map(|number| hexadecimal(number as f32));
-            format!("    {{{}}},\n", numbers.join(", "))
-        })
-        .collect();
+    let row = |row: &[f64; 3]| {
+        let numbers = row.map(|number| hexadecimal(number as f32));
+        format!("    {{{}}},\n", numbers.join(", "))
+    };
+    let rows: String = record.accel_g.iter().map(row).collect();
     let text = format!(
         "#include <stdint.h>\n#define RECORD_ROWS {}U\n\
-         static const float RECORD_G[RECORD_ROWS][3] = {{\n{}}};\n",
-        rows.len(),
-        rows.concat()
+         static const float RECORD_G[RECORD_ROWS][3] = {{\n{rows}}};\n",
+        record.accel_g.len(),
     );
     gyrocal_record::write_whole(&directory.join("record.h"), text.as_bytes())?;
     Ok(())
@@ -127,7 +97,7 @@ fn hexadecimal(number: f32) -> String {
 /// Compiles and links the example with the part of it that a machine needs.
 fn built(
     compiler: OsString,
-    flags: &[&str],
+    flags: &str,
     [part, library]: [&Path; 2],
     program: &Path,
 ) -> Result<(), Error> {
@@ -136,11 +106,9 @@ fn built(
     let directory = program.parent().unwrap_or(program);
     let files = [&examples.join("replay.c"), &examples.join(part), library];
     let mut command = Command::new(compiler);
-    command
-        .args(WARNINGS)
-        .arg("-I")
-        .arg(package.join("include"));
-    command.arg("-I").arg(directory).args(files).args(flags);
+    command.args(FLAGS.split(' ')).arg("-I").arg(directory);
+    command.arg("-I").arg(package.join("include")).args(files);
+    command.args(flags.split_whitespace());
     output(command.arg("-Wl,--gc-sections").arg("-o").arg(program))?;
     Ok(())
 }

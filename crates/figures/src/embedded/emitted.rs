@@ -9,24 +9,9 @@ use super::target::Tools;
 use crate::harness::{Error, Figure};
 use crate::kernel::instructions::root;
 
-const MANIFEST: &str = "\
-[package]
-name = \"gyrocal-emitted\"
-version = \"0.0.0\"
-edition = \"2024\"
-
-[profile.release]
-panic = \"abort\"
-
-[workspace]
-";
-const LOCK: &str = "\
-version = 4
-
-[[package]]
-name = \"gyrocal-emitted\"
-version = \"0.0.0\"
-";
+const MANIFEST: &str = "[package]\nname = \"gyrocal-emitted\"\nversion = \"0.0.0\"\nedition = \"2024\"\n\n\
+                        [profile.release]\npanic = \"abort\"\n\n[workspace]\n";
+const LOCK: &str = "version = 4\n\n[[package]]\nname = \"gyrocal-emitted\"\nversion = \"0.0.0\"\n";
 /// The effect of the example package, whose derived module is committed.
 const EFFECT: &str = "gyro_y.g_z";
 

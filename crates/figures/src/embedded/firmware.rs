@@ -20,11 +20,7 @@ const SPREAD: f64 = 2.0;
 const BYTES: [(&str, &str, Option<f64>); 8] = [
     ("f32: filter state", "size filter", Some(2700.0)),
     ("f32 rk4: stack of a step", STACK_OF_A_STEP, Some(1300.0)),
-    (
-        "f32: stack of construction",
-        STACK_OF_CONSTRUCTION,
-        Some(1500.0),
-    ),
+    ("f32: stack of construction", STACK_OF_START, Some(1500.0)),
     ("f32 rk4: stack of update", "stack update", None),
     ("f32 rk4: stack of coast", "stack coast", None),
     ("f32 rk4: stack of save", "stack save", None),
@@ -32,24 +28,20 @@ const BYTES: [(&str, &str, Option<f64>); 8] = [
     ("f32: saved state", "size saved", None),
 ];
 const STACK_OF_A_STEP: &str = "stack step";
-const STACK_OF_CONSTRUCTION: &str = "stack start";
+const STACK_OF_START: &str = "stack start";
 
 /// What the watch takes more than the filter alone: its line, that of the filter, and the limit.
 const OF_WATCH: [(&str, &str, &str, f64); 3] = [
-    (
-        "instructions, mean",
-        "instructions mean",
-        "instructions mean",
-        12_000.0,
-    ),
+    ("instructions, mean", "instructions mean", MEAN, 12_000.0),
     (
         "instructions, worst step",
         "instructions most",
-        "instructions mean",
+        MEAN,
         20_000.0,
     ),
     ("RAM, bytes", "size watched", "size filter", 16_000.0),
 ];
+const MEAN: &str = "instructions mean";
 
 pub(super) fn figures(tools: &Tools, small: bool) -> Result<Vec<Figure>, Error> {
     let mut figures = Vec::new();
@@ -131,22 +123,17 @@ struct Lines(String);
 impl Lines {
     /// The largest number of the lines that begin so.
     fn number(&self, name: &str) -> Result<f64, Error> {
-        let numbers = self.0.lines().filter_map(|line| {
-            let rest = line.strip_prefix(name)?;
-            rest.trim().parse::<f64>().ok()
-        });
-        numbers
-            .reduce(f64::max)
-            .ok_or_else(|| format!("the firmware printed no `{name}`:\n{}", self.0).into())
+        let rests = self.0.lines().filter_map(|line| line.strip_prefix(name));
+        let numbers = rests.filter_map(|rest| rest.trim().parse::<f64>().ok());
+        let largest = numbers.reduce(f64::max);
+        largest.ok_or_else(|| format!("the firmware printed no `{name}`:\n{}", self.0).into())
     }
 
     /// Lines of numbers that the host prints too.
     fn compared(&self) -> Vec<&str> {
         let kinds = ["bad_input ", "digest ", "number ", "error "];
-        let lines = self.0.lines();
-        lines
-            .filter(|line| kinds.iter().any(|kind| line.starts_with(kind)))
-            .collect()
+        let is_compared = |line: &&str| kinds.iter().any(|kind| line.starts_with(kind));
+        self.0.lines().filter(is_compared).collect()
     }
 
     fn steps(&self) -> usize {
@@ -164,14 +151,10 @@ fn of_rule(name: &str, lines: &Lines, limits: Option<[f64; 2]>) -> Result<[Figur
         let figure = limited(&format!("{name} step: {what}"), limit, measured, unit);
         figure.over(lines.steps(), RECORD)
     };
+    let percent = 100.0 * spread / mean;
     Ok([
         of(0, "instructions, mean", mean, ""),
-        of(
-            1,
-            "spread of instructions between steps",
-            100.0 * spread / mean,
-            "%",
-        ),
+        of(1, "spread of instructions between steps", percent, "%"),
     ])
 }
 
@@ -196,15 +179,11 @@ fn bad_input(number: &str, lines: &Lines) -> Figure {
         .0
         .lines()
         .filter(|line| line.starts_with("bad_input "));
-    let answers: Vec<bool> = answers.map(|line| line.ends_with(" 1")).collect();
-    let right = answers.iter().filter(|answer| **answer).count();
+    let all = answers.clone().count();
+    let right = answers.filter(|line| line.ends_with(" 1")).count();
     let name = format!("{number}: bad input answered as documented, state unchanged");
-    Figure {
-        target: format!("{0} of {0}", answers.len()),
-        measured: format!("{right} of {}", answers.len()),
-        ..Figure::truth(&name, right == answers.len() && right > 0)
-    }
-    .over(answers.len(), "cases")
+    let (target, measured) = (format!("{all} of {all}"), format!("{right} of {all}"));
+    Figure::told(&name, &target, measured, right == all && all > 0).over(all, "cases")
 }
 
 fn memory(lines: &Lines) -> Result<Vec<Figure>, Error> {
@@ -212,10 +191,9 @@ fn memory(lines: &Lines) -> Result<Vec<Figure>, Error> {
     for (name, line, limit) in BYTES {
         figures.push(limited(name, limit, lines.number(line)?, "bytes"));
     }
-    figures.push(Figure::truth(
-        "f32: construction needs no more stack than a step",
-        lines.number(STACK_OF_CONSTRUCTION)? <= lines.number(STACK_OF_A_STEP)?,
-    ));
+    let name = "f32: construction needs no more stack than a step";
+    let [start, step] = [STACK_OF_START, STACK_OF_A_STEP].map(|line| lines.number(line));
+    figures.push(Figure::truth(name, start? <= step?));
     Ok(figures)
 }
 

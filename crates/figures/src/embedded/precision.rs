@@ -4,10 +4,9 @@
 use gyrocal::{
     Drift, FactorisedPlatformFilter, FilterSettings, InitialAttitude, Platform, Precision, Site,
 };
-use gyrocal_evaluation::Statistic;
 use gyrocal_truth::{Population, Simulation, simulate};
 
-use crate::harness::{self, Context, Error, Figure, Row, Sources, of};
+use crate::harness::{self, Context, Error, Figure, Row, Sources, in_turn, of};
 
 const DAY_S: f64 = 86_400.0;
 const DIFFERENCE_SEED: u64 = 20_261_122;
@@ -20,9 +19,7 @@ const DAYS: [f64; 3] = [1.0, 3.0, 5.0];
 const SOURCES: Sources = of(&["", "crates/truth"], &[file!()]);
 
 pub(super) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
-    let mut figures = differences(context)?;
-    figures.extend(consistency(context)?);
-    Ok(figures)
+    in_turn(context, &[differences, consistency])
 }
 
 /// Coefficients, and their covariance as the factors U D Uᵀ that the filter holds: nothing is
@@ -117,20 +114,8 @@ fn differences(context: &Context) -> Result<Vec<Figure>, Error> {
         let days = DAYS[place];
         let name =
             format!("f32 against f64 after {days} days: largest difference of a coefficient");
-        Row::new(name, move |all: &[Vec<f64>]| {
-            let of_day = all
-                .iter()
-                .map(|record| record.get(place).copied().unwrap_or(f64::NAN));
-            // NaN must not pass for small.
-            let largest = of_day.fold(
-                0.0,
-                |largest: f64, value| {
-                    if value <= largest { largest } else { value }
-                },
-            );
-            Statistic::Value(largest, all.len() as u64)
-        })
-        .at_most(0.1, "a tenth of a sigma more is half a percent of it")
+        let of_day = move |record: &Vec<f64>| record.get(place).copied().unwrap_or(f64::NAN);
+        Row::largest(name, of_day).at_most(0.1, "a tenth of a sigma more is half a percent of it")
     });
     context.measure(&population, &rows)
 }
@@ -158,11 +143,8 @@ fn consistency(context: &Context) -> Result<Vec<Figure>, Error> {
     let end_s = [DAYS[1] * DAY_S];
     let job = |number| {
         let simulation = simulate(&records.scenario(number))?;
-        let truth = simulation
-            .truth
-            .coefficients
-            .named()
-            .map(|(_, value, _)| value);
+        let truth = simulation.truth.coefficients.named();
+        let truth = truth.map(|(_, value, _)| value);
         let of = |found: Vec<Estimate>| match found.as_slice() {
             [estimate] => Ok(estimate.nees(&truth)),
             _ => Err(Error::from("a record without a last row")),
@@ -171,17 +153,11 @@ fn consistency(context: &Context) -> Result<Vec<Figure>, Error> {
         Ok([single, of(estimates::<f64>(&simulation, sigma, &end_s)?)?])
     };
     let population = harness::Population::new("NEES of f32 and f64", [0, 500, 40], SOURCES, job);
+    let of = |which: usize| move |pair: &[f64; 2]| Some(pair[which]);
+    let reason = "nine coefficients; the uniform prior and what is not linear leave a few percent";
     let rows = [
-        Row::mean("f32: mean NEES (9 expected)", |pair: &[f64; 2]| {
-            Some(pair[0])
-        })
-        .between(
-            [8.7, 9.3],
-            "nine coefficients; the uniform prior and what is not linear leave a few percent",
-        ),
-        Row::mean("f64 on the same records: mean NEES", |pair: &[f64; 2]| {
-            Some(pair[1])
-        }),
+        Row::mean("f32: mean NEES (9 expected)", of(0)).between([8.7, 9.3], reason),
+        Row::mean("f64 on the same records: mean NEES", of(1)),
     ];
     context.measure(&population, &rows)
 }

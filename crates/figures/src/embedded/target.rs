@@ -6,7 +6,7 @@ use std::process::Command;
 use gyrocal_testkit::{Tool, tool};
 
 use crate::harness::Error;
-use crate::kernel::instructions::{output, root};
+use crate::kernel::instructions::{cargo, output, root};
 
 const TRIPLE: &str = "thumbv7em-none-eabihf";
 const LINKER: &str = "arm-none-eabi-ld";
@@ -21,10 +21,8 @@ impl Tools {
     /// Finds the tools; `None` if one is missing.
     pub(super) fn find() -> Option<Self> {
         // All are looked for: each that is missing is told.
-        let found = [Tool::TargetCompiler, Tool::Qemu, Tool::ArmGcc].map(tool);
-        let [Some(compiler), Some(emulator), Some(_)] = found else {
-            return None;
-        };
+        let [compiler, emulator, gcc] = [Tool::TargetCompiler, Tool::Qemu, Tool::ArmGcc].map(tool);
+        let (compiler, emulator, _) = (compiler?, emulator?, gcc?);
         Some(Self { compiler, emulator })
     }
 
@@ -37,14 +35,8 @@ impl Tools {
         );
         let directory = root().join("target/firmware-target");
         output(
-            cargo(package, &directory)
-                .args([
-                    "--release",
-                    "--locked",
-                    "--target",
-                    TRIPLE,
-                    "-Zbuild-std=core",
-                ])
+            build(package, &directory)
+                .args(["--release", "--target", TRIPLE, "-Zbuild-std=core"])
                 .args(arguments)
                 .env("RUSTC", &self.compiler)
                 .env("RUSTC_BOOTSTRAP", "1")
@@ -86,9 +78,7 @@ impl Tools {
     /// Names of symbols of a firmware.
     pub(super) fn symbols(&self, firmware: &Path) -> Result<Vec<String>, Error> {
         let text = output(Command::new("arm-none-eabi-nm").arg(firmware))?;
-        let names = text
-            .lines()
-            .filter_map(|line| line.split_whitespace().last());
+        let names = text.lines().filter_map(|line| line.split(' ').next_back());
         Ok(names.map(str::to_owned).collect())
     }
 }
@@ -96,24 +86,16 @@ impl Tools {
 /// Builds a package outside of the workspace for the host; returns the directory of what was built.
 pub(super) fn build_on_host(package: &str, arguments: &[&str]) -> Result<PathBuf, Error> {
     let directory = root().join("target/firmware");
-    output(cargo(package, &directory).arg("--locked").args(arguments))?;
-    let profile = if arguments.contains(&"--release") {
-        "release"
-    } else {
-        "debug"
-    };
-    Ok(directory.join(profile))
+    output(build(package, &directory).args(arguments))?;
+    let is_release = arguments.contains(&"--release");
+    Ok(directory.join(if is_release { "release" } else { "debug" }))
 }
 
-fn cargo(package: &str, directory: &Path) -> Command {
-    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let mut command = Command::new(cargo);
-    command
-        .arg("build")
-        .arg("--quiet")
-        .arg("--manifest-path")
-        .arg(root().join(package).join("Cargo.toml"))
-        .arg("--target-dir")
-        .arg(directory);
+fn build(package: &str, directory: &Path) -> Command {
+    let manifest = root().join(package).join("Cargo.toml");
+    let mut command = Command::new(cargo());
+    command.args(["build", "--quiet", "--locked"]);
+    command.arg("--manifest-path").arg(manifest);
+    command.arg("--target-dir").arg(directory);
     command
 }

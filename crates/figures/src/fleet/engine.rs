@@ -40,9 +40,8 @@ pub(super) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
 }
 
 fn over(figures: Vec<Figure>, records: f64, how: &str) -> Vec<Figure> {
-    let figures = figures.into_iter();
-    let figures = figures.map(|one| one.over(records as usize, format!("0..{records}{how}")));
-    figures.collect()
+    let over = |one: Figure| one.over(records as usize, format!("0..{records}{how}"));
+    figures.into_iter().map(over).collect()
 }
 
 fn many(found: &Measured) -> Vec<Figure> {
@@ -51,20 +50,15 @@ fn many(found: &Measured) -> Vec<Figure> {
         "one worker over the library, partitions of a second: overhead of the engine a record";
     let growth = "memory of a worker, second half of the records over the first";
     let largest = "memory of a worker, most";
+    let these = "these records: rows of each, records of a partition, cost by the library";
+    let [rows, records] = ["rows_of_a_record", "rows_of_a_partition"].map(|key| found.of(key));
+    let cost_ms = 1e3 * found.of("library_s");
     vec![
         Figure::within(ratio, [1.6, f64::INFINITY], found.of("ratio")),
         Figure::at_most(overhead, 5.0, 100.0 * found.of("overhead"), "%"),
         Figure::at_most(largest, 1000.0, found.of("worker_mb"), "MB"),
         Figure::at_most(growth, GROWTH_MB, found.of("growth_mb"), "MB"),
-        Figure::note(
-            "these records: rows of each, records of a partition, cost by the library",
-            format!(
-                "{}, {}, {:.2} ms",
-                found.of("rows_of_a_record"),
-                found.of("rows_of_a_partition"),
-                1e3 * found.of("library_s")
-            ),
-        ),
+        Figure::note(these, format!("{rows}, {records}, {cost_ms:.2} ms")),
     ]
 }
 
@@ -75,13 +69,10 @@ fn killed(found: &Measured) -> Vec<Figure> {
     let mut equal = Figure::truth(equal, found.is("equal"));
     equal.measured += &format!(", {runs} runs");
     let name = "workers killed with SIGKILL: records lost, and repeated after it";
-    let lost_or_repeated = Figure::at_most(name, 0.0, lost + repeated, "");
-    let killed = Figure {
-        measured: format!("{lost} and {repeated}, {kills} kills"),
-        holds: lost_or_repeated.holds.filter(|_| kills >= KILLS),
-        too_few: kills < KILLS,
-        ..lost_or_repeated
-    };
+    let measured = format!("{lost} and {repeated}, {kills} kills");
+    let killed = Figure::told(name, "<= 0", measured, lost + repeated <= 0.0);
+    let mut killed = killed.judged(kills >= KILLS);
+    killed.too_few = kills < KILLS;
     vec![equal, killed]
 }
 
@@ -95,61 +86,44 @@ fn stages(found: &Measured) -> Vec<Figure> {
     ];
     let each = |key: &str| found.of(key) / found.of("records");
     let total_s: f64 = STAGES.iter().map(|(_, key)| each(key)).sum();
+    let (name, bytes) = (
+        "records of three days: most bytes of result and scores",
+        found.of("largest_sent_bytes"),
+    );
     let mut figures = vec![
-        Figure::at_most(
-            "records of three days: most bytes of result and scores",
-            200.0,
-            found.of("largest_sent_bytes") / 1e3,
-            "kB",
-        ),
+        Figure::at_most(name, 200.0, bytes / 1e3, "kB"),
         Figure::note("rows of a record", found.of("rows_of_a_record").to_string()),
     ];
-    figures.extend(STAGES.map(|(stage, key)| {
+    let mut note = |name: &str, measured| figures.push(Figure::note(name, measured));
+    for (stage, key) in STAGES {
         let (milliseconds, share) = (1e3 * each(key), 100.0 * each(key) / total_s);
         let measured = format!("{milliseconds:.2} ms a record, {share:.1} % of a worker's time");
-        Figure::note(&format!("stage: {stage}"), measured)
-    }));
+        note(&format!("stage: {stage}"), measured);
+    }
     let [bytes_in, bytes_out] = ["bytes_in", "bytes_out"].map(each);
     let [gigabytes_in, gigabytes_out] = [bytes_in, bytes_out].map(|bytes| bytes * MILLION / 1e9);
     let (summary_ms, summary_mb) = (1e3 * each("summary_s"), each("summary_mb"));
     let hours = total_s * MILLION / 3600.0;
-    let notes = [
-        (
-            "stage: summary of the fleet, one process".to_owned(),
-            format!("{summary_ms:.2} ms a record, {summary_mb:.2} MB of memory a record"),
-        ),
-        (
-            "bytes of a record in and out, as Parquet".to_owned(),
-            format!("{:.1} kB and {:.1} kB", bytes_in / 1e3, bytes_out / 1e3),
-        ),
-        (
-            "a million such records: core-hours, bytes in and out".to_owned(),
-            format!("{hours:.2} h, {gigabytes_in:.1} GB and {gigabytes_out:.1} GB"),
-        ),
-        (
-            format!(
-                "a million such records: price at {CORE_HOUR} a core-hour, and of a month of their results \
-                 at {GIGABYTE_MONTH} a GB"
-            ),
-            format!(
-                "{:.2} and {:.2}",
-                CORE_HOUR * hours,
-                GIGABYTE_MONTH * gigabytes_out
-            ),
-        ),
-        (
-            // Beyond them, more do not help.
-            format!(
-                "workers that a store of {} GB/s feeds: beyond, no linear scaling",
-                STORE_RATE / 1e9
-            ),
-            format!("{:.0}", STORE_RATE / ((bytes_in + bytes_out) / total_s)),
-        ),
-        (
-            "records whose summary fits into 16 GB of memory".to_owned(),
-            format!("{:.0}", 16e3 / summary_mb),
-        ),
-    ];
-    figures.extend(notes.map(|(name, measured)| Figure::note(&name, measured)));
+    let summary = format!("{summary_ms:.2} ms a record, {summary_mb:.2} MB of memory a record");
+    note("stage: summary of the fleet, one process", summary);
+    let bytes = format!("{:.1} kB and {:.1} kB", bytes_in / 1e3, bytes_out / 1e3);
+    note("bytes of a record in and out, as Parquet", bytes);
+    let all = format!("{hours:.2} h, {gigabytes_in:.1} GB and {gigabytes_out:.1} GB");
+    note("a million such records: core-hours, bytes in and out", all);
+    let name = format!(
+        "a million such records: price at {CORE_HOUR} a core-hour, and of a month of their results \
+         at {GIGABYTE_MONTH} a GB"
+    );
+    let [price, of_results] = [CORE_HOUR * hours, GIGABYTE_MONTH * gigabytes_out];
+    note(&name, format!("{price:.2} and {of_results:.2}"));
+    // Beyond them, more do not help.
+    let (rate, workers) = (
+        STORE_RATE / 1e9,
+        STORE_RATE / ((bytes_in + bytes_out) / total_s),
+    );
+    let name = format!("workers that a store of {rate} GB/s feeds: beyond, no linear scaling");
+    note(&name, format!("{workers:.0}"));
+    let records = format!("{:.0}", 16e3 / summary_mb);
+    note("records whose summary fits into 16 GB of memory", records);
     figures
 }

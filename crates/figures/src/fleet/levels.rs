@@ -1,14 +1,14 @@
 //! Coefficients over the units of simulated fleets: coverage of the hierarchical intervals, batches and sites.
 
 use gyrocal_fleet::{
-    Coefficient, FleetOptions, FleetRecord, FleetResult, GroupKind, RecordName, WithInterval,
-    summarise,
+    Coefficient, FleetOptions, FleetRecord, FleetResult, Group, GroupKind, RecordName,
+    WithInterval, summarise,
 };
 use gyrocal_statistics::deviates::Draw;
 use serde::{Deserialize, Serialize};
 
 use super::fleets;
-use crate::harness::{COVERAGE, COVERAGE_REASON, Context, Error, Figure, Row};
+use crate::harness::{Context, Error, Figure, Row};
 
 /// Numbers of units of the fleets of the coverage, and of those with records over years.
 const UNITS: [u64; 3] = [5, 20, 100];
@@ -44,13 +44,12 @@ pub(super) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
         let row = |place: usize, what| {
             let name =
                 format!("{units} units: coverage of the 95 % interval of the fleet's {what}");
-            Row::share(name, move |covered: &[bool; 2]| Some(covered[place]))
-                .between(COVERAGE, COVERAGE_REASON)
+            Row::share(name, move |covered: &[bool; 2]| Some(covered[place])).of_coverage()
         };
         figures.extend(context.measure(&population, &[row(0, "mean"), row(1, "spread")])?);
     }
     let name = "30 units with 4 records in 3 years: coverage of mean, spread, repeatability, ageing and its spread";
-    let row = Row::each(name, |covered: &[bool; 5]| *covered).between(COVERAGE, COVERAGE_REASON);
+    let row = Row::each(name, |covered: &[bool; 5]| *covered).of_coverage();
     let population = fleets("over years", [FIRST_SEED, 600, 60], over_years);
     figures.extend(context.measure(&population, &[row])?);
     figures.extend(groups(context)?);
@@ -92,11 +91,8 @@ fn one_record_each(units: u64, seed: u64) -> Result<[bool; 2], Error> {
     let records = (0..units).map(|unit| {
         let sigma = SPREAD * draw.log_uniform([0.1, 0.7]);
         let estimate = SPREAD * draw.normal() + sigma * draw.normal();
-        record(
-            unit,
-            RecordName::default(),
-            vec![coefficient(0, estimate, sigma)],
-        )
+        let own = vec![coefficient(0, estimate, sigma)];
+        record(unit, RecordName::default(), own)
     });
     let found = &summarised(&records.collect::<Vec<_>>())?.coefficients[0];
     Ok([covers(found.mean, 0.0), covers(found.spread, SPREAD)])
@@ -183,13 +179,10 @@ fn grouped(odd: Odd, seed: u64) -> Result<Grouped, Error> {
         _ => odd == Odd::BatchWithItsSite && name == SITES.to_string(),
     };
     let name = format!("coefficient {differs}");
-    let right = found
-        .iter()
-        .find(|one| one.coefficient == name && holds(one.group.kind, &one.group.name));
-    let both = right.is_some_and(|one| {
-        let mut alternatives = one.alternatives.iter();
-        alternatives.any(|other| holds(other.group.kind, &other.group.name))
-    });
+    let holds = |group: &Group| holds(group.kind, &group.name);
+    let mut own = found.iter().filter(|one| one.coefficient == name);
+    let right = own.find(|one| holds(&one.group));
+    let both = right.is_some_and(|one| one.alternatives.iter().any(|of| holds(&of.group)));
     Ok(Grouped {
         found: right.is_some(),
         is_false: found.len() > usize::from(right.is_some()),
@@ -200,31 +193,24 @@ fn grouped(odd: Odd, seed: u64) -> Result<Grouped, Error> {
 fn groups(context: &Context) -> Result<Vec<Figure>, Error> {
     let job = |seed| Ok([grouped(Odd::Nothing, seed)?, grouped(Odd::Batch, seed)?]);
     let population = fleets("with a batch", [FIRST_SEED, 2000, 12], job);
+    let found = |all: &[Grouped; 2]| Some(all[1].found);
+    let is_false = |all: &[Grouped; 2]| all.map(|one| one.is_false);
+    let worth = "thirty units of one spread are worth a look: nine of ten are found";
+    let told = "fleets with a batch or site that is falsely told to differ";
     let rows = [
         Row::share(
             "a batch of 30 of 400 units differs by one spread: found",
-            |all: &[Grouped; 2]| Some(all[1].found),
+            found,
         )
-        .at_least(
-            0.9,
-            "thirty units of one spread are worth a look: nine of ten are found",
-        ),
-        Row::each(
-            "fleets with a batch or site that is falsely told to differ",
-            |all: &[Grouped; 2]| all.map(|one| one.is_false),
-        )
-        .at_most(0.02, "the level is 1.8 %"),
+        .at_least(0.9, worth),
+        Row::each(told, is_false).at_most(0.02, "the level is 1.8 %"),
     ];
     let mut figures = context.measure(&population, &rows)?;
     let job = |seed| grouped(Odd::BatchWithItsSite, seed);
     let population = fleets("with a batch at one site", [FIRST_SEED, 200, 3], job);
-    let both = Row::share(
-        "the batch is a site too, and is found: both are told",
-        |one: &Grouped| one.found.then_some(one.both_told),
-    );
-    figures.extend(context.measure(
-        &population,
-        &[both.at_least(1.0, "the same units, the same evidence")],
-    )?);
+    let both = |one: &Grouped| one.found.then_some(one.both_told);
+    let row = Row::share("the batch is a site too, and is found: both are told", both)
+        .at_least(1.0, "the same units, the same evidence");
+    figures.extend(context.measure(&population, &[row])?);
     Ok(figures)
 }

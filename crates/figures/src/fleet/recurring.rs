@@ -50,11 +50,8 @@ fn simulators(records: u64) -> Result<Vec<ScoreSimulator>, Error> {
 fn effects(simulators: &[ScoreSimulator]) -> Vec<String> {
     let of = |one: &ScoreSimulator| one.table().effects.clone().into_iter().map(|one| one.id);
     let mut all: Vec<String> = simulators.iter().take(1).flat_map(of).collect();
-    all.retain(|id| {
-        simulators
-            .iter()
-            .all(|other| of(other).any(|own| own == *id))
-    });
+    let has = |one: &ScoreSimulator, id: &String| of(one).any(|own| own == *id);
+    all.retain(|id| simulators.iter().all(|one| has(one, id)));
     all
 }
 
@@ -80,9 +77,8 @@ fn fleet(
         let simulator = draw.one_of(simulators);
         let own = cause.filter(|(_, share)| has(unit, *share));
         let own = own.map(|(strength, _)| (effect.as_str(), strength));
-        simulator
-            .draw(own, &mut draw)
-            .ok_or_else(|| Error::from("scores that no record has"))
+        let drawn = simulator.draw(own, &mut draw);
+        drawn.ok_or_else(|| Error::from("scores that no record has"))
     });
     let tables: Vec<ScoreTable> = tables.collect::<Result<_, _>>()?;
     let names: Vec<String> = (0..UNITS).map(|unit| unit.to_string()).collect();
@@ -135,13 +131,8 @@ pub(super) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
             let cause = share.map(|share| (strength, share));
             fleet(&simulators, &effects, cause, seed)
         };
-        let [few, some, many] = SHARES.map(Some);
-        let with = [
-            of(few, seed)?,
-            of(some, seed + 1000)?,
-            of(many, seed + 2000)?,
-        ];
-        Ok((with, of(None, seed + 5000)?))
+        let [few, some, many] = [0, 1, 2].map(|at| of(Some(SHARES[at]), seed + 1000 * at as u64));
+        Ok(([few?, some?, many?], of(None, seed + 5000)?))
     });
     context.measure(&population, &rows())
 }
@@ -168,22 +159,18 @@ fn rows() -> Vec<Row<'static, Fleets>> {
         })
         .at_most(0.05, "the rate that is promised")
     };
-    let mut rows: Vec<Row<'_, Fleets>> = SHARES
-        .iter()
-        .enumerate()
-        .map(|(place, share)| {
-            let percent = 100.0 * share;
-            let name = format!("200 units, a cause of 1, 2 or 3 sigmas in {percent:.0} % of them");
-            power(&name, place, place + 1)
-        })
-        .collect();
+    let each = SHARES.iter().enumerate().map(|(place, share)| {
+        let percent = 100.0 * share;
+        let name = format!("200 units, a cause of 1, 2 or 3 sigmas in {percent:.0} % of them");
+        power(&name, place, place + 1)
+    });
+    let mut rows: Vec<Row<'_, Fleets>> = each.collect();
+    let named = |(_, none): &Fleets| Some(none.discoveries > 0);
+    let without = "fleets without a cause that name one; their rate is set to 5 %";
     rows.extend([
         power("the same, all shares", 0, SHARES.len()),
         false_ones("fleets with a cause: false discovery rate", 0),
-        Row::share(
-            "fleets without a cause that name one; their rate is set to 5 %",
-            |(_, none): &Fleets| Some(none.discoveries > 0),
-        ),
+        Row::share(without, named),
         false_ones("fleets with and without a cause: false discovery rate", 1),
     ]);
     rows

@@ -84,26 +84,18 @@ pub(super) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
     let bytes = all().map(|one| one.result.len() + one.scores.len()).max();
     let with = recurring(fleet.records.iter().map(|[with, _]| with))?;
     let without = recurring(fleet.records.iter().map(|[_, without]| without))?;
+    let alone =
+        "200 simulated records, `gyro_y.g_z` of 2.5 sigmas in a fifth of them: it alone recurs";
+    let nothing = "the same records without it: nothing recurs";
+    let most = "result and scores of a record: most bytes that travel";
+    let kilobytes = bytes.unwrap_or_default() as f64 / 1e3;
     let figures = [
-        Figure::truth(
-            "200 simulated records, `gyro_y.g_z` of 2.5 sigmas in a fifth of them: it alone recurs",
-            with == [true],
-        ),
-        Figure::truth(
-            "the same records without it: nothing recurs",
-            without.is_empty(),
-        ),
-        Figure::at_most(
-            "result and scores of a record: most bytes that travel",
-            200.0,
-            bytes.unwrap_or_default() as f64 / 1e3,
-            "kB",
-        ),
+        Figure::truth(alone, with == [true]),
+        Figure::truth(nothing, without.is_empty()),
+        Figure::at_most(most, 200.0, kilobytes, "kB"),
     ];
-    let figures = figures.into_iter().map(|figure| {
-        // Fewer units than these need not show the cause.
-        let holds = figure.holds.filter(|_| fleet.full);
-        Figure { holds, ..figure }.over(fleet.records.len(), fleet.seeds.as_str())
-    });
-    Ok(figures.collect())
+    // Fewer units than these need not show the cause.
+    let judged = figures.map(|figure| figure.judged(fleet.full));
+    let over = |figure: Figure| figure.over(fleet.records.len(), fleet.seeds.as_str());
+    Ok(judged.map(over).into())
 }

@@ -39,17 +39,15 @@ pub(super) fn of_huge_programs() -> Result<Vec<Figure>, Error> {
         let (before_mb, begin) = (peak.read_mb(), Instant::now());
         let result = emitted(&text);
         let (seconds, memory_mb) = (begin.elapsed().as_secs_f64(), peak.read_mb() - before_mb);
-        let answer = match &result {
+        let is_right = result.is_ok() == (target == "emitted");
+        let answer = match result {
             Ok(module) => format!("{} MB of Rust", module.len() / 1_000_000),
             Err(error) => error.to_string(),
         };
         let megabytes = text.len() / 1_000_000;
         let name = format!("program of {count} instructions, {megabytes} MB");
-        figures.push(Figure {
-            target: target.to_owned(),
-            measured: format!("{seconds:.1} s, {memory_mb:.0} MB beside the text: {answer}"),
-            ..Figure::truth(&name, result.is_ok() == (target == "emitted"))
-        });
+        let measured = format!("{seconds:.1} s, {memory_mb:.0} MB beside the text: {answer}");
+        figures.push(Figure::told(&name, target, measured, is_right));
     }
     Ok(figures)
 }
@@ -91,12 +89,9 @@ fn program(count: usize) -> String {
     }
     let joined =
         |count, text: &dyn Fn(usize) -> String| (0..count).map(text).collect::<Vec<_>>().join(",");
-    instructions += &joined(OUTPUTS, &|nonzero| {
-        format!(
-            r#"["output",0,{nonzero},{}]"#,
-            count - OUTPUTS - 1 - nonzero
-        )
-    });
+    let last = count - OUTPUTS - 1;
+    let output = |nonzero| format!(r#"["output",0,{nonzero},{}]"#, last - nonzero);
+    instructions += &joined(OUTPUTS, &output);
     let elements = joined(INPUTS, &|i| {
         format!(r#"{{"name":"x{i}","unit":"1","doc":"element"}}"#)
     });

@@ -18,14 +18,11 @@ const MOST_EXPORT_S: f64 = 1.0;
 pub(super) fn figures(directory: &Path, python: &Path) -> Result<Vec<Figure>, Error> {
     let mut figures = of_the_exporter(directory, python)?.to_vec();
     let data = directory.join("operations");
-    let emit = root().join("codegen/emit");
+    let of_emit = ["exporter/run.py", "tests/data/operations"];
     output(
         Command::new(python)
             .args(["-I", "-B"])
-            .args([
-                emit.join("exporter/run.py"),
-                emit.join("tests/data/operations"),
-            ])
+            .args(of_emit.map(|file| root().join("codegen/emit").join(file)))
             .arg(&data)
             .env("GRAPHS", GRAPHS.to_string())
             .env("EDGES", EDGES.to_string()),
@@ -40,37 +37,21 @@ pub(super) fn figures(directory: &Path, python: &Path) -> Result<Vec<Figure>, Er
             .env("GYROCAL_OPERATIONS_DATA", &data),
     );
     let printed = tested.as_deref().unwrap_or_default();
-    let listed = printed
-        .lines()
-        .filter_map(|line| line.split_once("listed difference: "));
-    let listed: Vec<&str> = listed.map(|(_, rest)| rest).collect();
+    let listed = printed.lines();
+    let listed = listed.filter_map(|line| Some(line.split_once("listed difference: ")?.1));
+    let listed = listed.collect::<Vec<_>>().join("; ");
+    let none = "0 beyond those listed";
     let (edges, graphs) = match &tested {
-        Ok(_) => (
-            "0 beyond those listed".to_owned(),
-            format!("{GRAPHS} of {GRAPHS}"),
-        ),
+        Ok(_) => (none.to_owned(), format!("{GRAPHS} of {GRAPHS}")),
         Err(error) => (error.to_string(), "not all, see above".to_owned()),
     };
-    let figure = |name: &str, target: &str, measured: String, runs: usize| Figure {
-        target: target.to_owned(),
-        measured,
-        ..Figure::truth(name, tested.is_ok()).over(runs, "1")
-    };
+    let of_edges = "values and slopes of operations at their edges: beyond 2 ulp of CasADi";
+    let of_graphs = "random graphs: equal to the interpreter, and to CasADi to rounding";
     let what = "differences from CasADi that the manual lists, worst in ulp";
     figures.extend([
-        figure(
-            "values and slopes of operations at their edges: beyond 2 ulp of CasADi",
-            "0 beyond those listed",
-            edges,
-            points,
-        ),
-        Figure::note(what, listed.join("; ")).over(points, "1"),
-        figure(
-            "random graphs: equal to the interpreter, and to CasADi to rounding",
-            "all",
-            graphs,
-            GRAPHS,
-        ),
+        Figure::told(of_edges, none, edges, tested.is_ok()).over(points, "1"),
+        Figure::note(what, listed).over(points, "1"),
+        Figure::told(of_graphs, "all", graphs, tested.is_ok()).over(GRAPHS, "1"),
     ]);
     Ok(figures)
 }
@@ -79,27 +60,22 @@ pub(super) fn figures(directory: &Path, python: &Path) -> Result<Vec<Figure>, Er
 fn of_the_exporter(directory: &Path, python: &Path) -> Result<[Figure; 2], Error> {
     let script = directory.join("operations.py");
     std::fs::write(&script, SCRIPT)?;
-    let printed = output(
-        Command::new(python)
-            .arg(&script)
-            .arg(root().join("codegen/emit/exporter"))
-            .arg(directory.join("large.json"))
-            .arg(NODES.to_string()),
-    )?;
+    let (exporter, large) = (
+        root().join("codegen/emit/exporter"),
+        directory.join("large.json"),
+    );
+    let mut command = Command::new(python);
+    command.args([&script, &exporter, &large]);
+    let printed = output(command.arg(NODES.to_string()))?;
     let of = |kind: &str| -> Vec<&str> {
         let words = printed.lines().filter_map(|line| line.split_once(' '));
-        words
-            .filter(|(word, _)| *word == kind)
-            .map(|(_, rest)| rest)
-            .collect()
+        let own = words.filter(|(word, _)| *word == kind);
+        own.map(|(_, rest)| rest).collect()
     };
     let (supported, refused) = (of("supported").len(), of("refused"));
     let name = "operations of SX: supported, refused with a reason";
-    let operations = Figure {
-        target: "all but I/O".to_owned(),
-        measured: format!("{supported}, {} ({})", refused.len(), refused.join(", ")),
-        ..Figure::truth(name, refused == ["OP_PRINTME"])
-    };
+    let measured = format!("{supported}, {} ({})", refused.len(), refused.join(", "));
+    let operations = Figure::told(name, "all but I/O", measured, refused == ["OP_PRINTME"]);
     let export = of("export");
     let words = export.first().and_then(|line| line.split_once(' '));
     let (seconds, count) = words.ok_or("the exporter printed no time")?;

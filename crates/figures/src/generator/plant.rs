@@ -30,10 +30,7 @@ pub(super) fn lines() -> Result<Vec<Figure>, Error> {
                 count += code_lines(&root().join("examples").join(example).join(file), comment)?;
             }
             let name = format!("{example}: lines of {language} from equations to a filter");
-            figures.push(Figure {
-                measured: count.to_string(),
-                ..Figure::within(&name, [f64::NEG_INFINITY, most], count as f64)
-            });
+            figures.push(Figure::at_most(&name, most, count as f64, ""));
         }
     }
     Ok(figures)
@@ -58,19 +55,18 @@ pub(super) fn builds() -> Result<Vec<Figure>, Error> {
     let mut settings = Settings::from_env();
     settings.environments = Some(scratch.path().join("environments"));
     let derive = || {
-        Derivation::open(root().join("codegen/derive"))?
-            .with_settings(settings.clone())
-            .derive()
+        let derivation = Derivation::open(root().join("codegen/derive"))?;
+        derivation.with_settings(settings.clone()).derive()
     };
     let (first, again) = (derive()?.timings, derive()?.timings);
     let seconds = |name, most, time: Duration| Figure::at_most(name, most, time.as_secs_f64(), "s");
+    let (edit, edited) = (
+        "derivation and emission after an edit",
+        again.derivation + again.emission,
+    );
     let mut figures = vec![
         seconds("first environment", 60.0, first.environment),
-        seconds(
-            "derivation and emission after an edit",
-            5.0,
-            again.derivation + again.emission,
-        ),
+        seconds(edit, 5.0, edited),
     ];
     // Target folders of their own: cargo takes packages of one version for unchanged.
     let timed = |arguments: &str| {
@@ -86,15 +82,17 @@ pub(super) fn builds() -> Result<Vec<Figure>, Error> {
     figures.push(Figure::note(name, example));
     let packages = timed("publish --workspace --dry-run --allow-dirty")?;
     let name = "every package builds from its own files: cargo publish --workspace --dry-run";
-    let mut figure = Figure::truth(name, packages.is_ok());
-    figure.measured = match packages {
-        Ok(time) => format!("yes, {time}"),
+    let (is_built, text) = match packages {
+        Ok(time) => (true, format!("yes, {time}")),
         Err(error) => {
             let text = error.to_string();
             let line = text.lines().find(|line| line.starts_with("error"));
-            format!("no: {}", line.unwrap_or("no reason is told"))
+            (
+                false,
+                format!("no: {}", line.unwrap_or("no reason is told")),
+            )
         }
     };
-    figures.push(figure);
+    figures.push(Figure::told(name, "yes", text, is_built));
     Ok(figures)
 }

@@ -78,9 +78,8 @@ impl Timed {
 
     /// The competitors that the program has.
     fn competitors(&self) -> impl Iterator<Item = &'static str> {
-        COMPETITORS
-            .into_iter()
-            .filter(|name| self.ns.contains_key(*name))
+        let all = COMPETITORS.into_iter();
+        all.filter(|name| self.ns.contains_key(*name))
     }
 
     /// The least time of a competitor over another time.
@@ -123,19 +122,15 @@ fn of_times(form: Form, line: &Timed) -> [Figure; 3] {
     let times: Vec<String> = times.map(|name| format!("{:.1}", line.ns[name])).collect();
     let sines = 100.0 * line.ns["sines"] / line.ns["ours"];
     let ratio = |what: &str, least: f64, ours: &str| {
-        Figure::within(
-            &format!("{name}: {what}"),
-            [least, f64::INFINITY],
-            line.ratio(ours),
-        )
+        let name = format!("{name}: {what}");
+        Figure::within(&name, [least, f64::INFINITY], line.ratio(ours))
     };
+    let all = format!("{name}: ours, by value, wrenfold, SymForce, CasADi's C");
+    let times = format!("{} ns; sines {sines:.0} %", times.join(", "));
     [
         ratio("best competitor / ours", least, "ours"),
         ratio("the same, ours by value", LEAST, "value"),
-        Figure::note(
-            &format!("{name}: ours, by value, wrenfold, SymForce, CasADi's C"),
-            format!("{} ns; sines {sines:.0} %", times.join(", ")),
-        ),
+        Figure::note(&all, times),
     ]
     .map(|figure| figure.over(ROUNDS, ""))
 }
@@ -143,23 +138,13 @@ fn of_times(form: Form, line: &Timed) -> [Figure; 3] {
 fn of_all(form: Form, timed: &[Timed]) -> [Figure; 2] {
     let logarithms: f64 = timed.iter().map(|line| line.ratio("ours").ln()).sum();
     let mean = (logarithms / timed.len() as f64).exp();
-    let apart = timed
-        .iter()
-        .map(|line| line.ns["apart"])
-        .fold(0.0, f64::max);
+    let apart = timed.iter().map(|line| line.ns["apart"]);
     let name = |what: &str| format!("{}: {what}", form.name());
     let what = name("geometric mean of all functions and angles");
+    let largest = name("largest difference of a competitor, relative");
     [
         form.judged(&what, [MEAN, f64::INFINITY], mean),
-        Figure {
-            target: format!("<= {APART:e}"),
-            measured: format!("{apart:.1e}"),
-            ..Figure::within(
-                &name("largest difference of a competitor, relative"),
-                [0.0, APART],
-                apart,
-            )
-        },
+        Figure::at_most_small(&largest, APART, apart.fold(0.0, f64::max)),
     ]
 }
 
@@ -179,11 +164,9 @@ fn of_instructions(form: Form, program: &Path, timed: &[Timed]) -> Result<Vec<Fi
             best = best.min(count(name)? - nothing);
         }
         let ratio = (count("ours")? - nothing) / best;
-        let what = format!(
-            "{}: {}, 0.6 rad: instructions, ours / best competitor",
-            form.name(),
-            line.function
-        );
+        let (form_name, function) = (form.name(), &line.function);
+        let what =
+            format!("{form_name}: {function}, 0.6 rad: instructions, ours / best competitor");
         figures.push(form.judged(&what, [f64::NEG_INFINITY, INSTRUCTIONS], ratio));
     }
     Ok(figures)
@@ -216,14 +199,12 @@ fn built(source: &Path, form: Form) -> Result<(PathBuf, &'static str), Error> {
     let program = Program::from_json(&text, "ours.json")?;
     let module = emit_module_with(&program, &header, &options)?;
     std::fs::write(source.join("src/ours.rs"), module)?;
-    let (target, features) = (
-        if has_x86_64_v3() {
-            "x86-64-v3"
-        } else {
-            "native"
-        },
-        if form == Form::Fused { "\"fused\"" } else { "" },
-    );
+    let target = if has_x86_64_v3() {
+        "x86-64-v3"
+    } else {
+        "native"
+    };
+    let features = if form == Form::Fused { "\"fused\"" } else { "" };
     let object = source.join("casadi_peer.o");
     let mut gcc = Command::new("gcc");
     gcc.args(["-O3", &format!("-march={target}"), "-c", "-o"]);
@@ -231,14 +212,12 @@ fn built(source: &Path, form: Form) -> Result<(PathBuf, &'static str), Error> {
     let library = source.join("libcasadi_peer.a");
     output(Command::new("ar").arg("rcs").args([&library, &object]))?;
     let scalar = root().join("crates/scalar").canonicalize()?;
-    std::fs::write(
-        source.join("Cargo.toml"),
-        format!(
-            "[package]\nname = \"race\"\nversion = \"0.0.0\"\nedition = \"2024\"\n\n\
-             [dependencies]\ngyrocal-scalar = {{ path = {scalar:?}, features = [{features}] }}\n\
-             nalgebra = \"0.35\"\n\n[profile.release]\ncodegen-units = 1\n\n[workspace]\n"
-        ),
-    )?;
+    let manifest = format!(
+        "[package]\nname = \"race\"\nversion = \"0.0.0\"\nedition = \"2024\"\n\n\
+         [dependencies]\ngyrocal-scalar = {{ path = {scalar:?}, features = [{features}] }}\n\
+         nalgebra = \"0.35\"\n\n[profile.release]\ncodegen-units = 1\n\n[workspace]\n"
+    );
+    std::fs::write(source.join("Cargo.toml"), manifest)?;
     let flags = format!("-C target-cpu={target} -L native={}", source.display());
     output(
         Command::new(cargo())

@@ -3,12 +3,11 @@
 use std::any::Any;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
 use gyrocal_evaluation::{Campaign, Fingerprint, Outcome};
 
-use super::costs::{Cost, Costs};
 use super::population::{Kept, Population, Records, Timed};
 use super::row::Row;
 use crate::cost::on_one_core;
@@ -62,10 +61,6 @@ impl Size {
             Self::Full => full,
         }
     }
-
-    pub(crate) fn is_small(self) -> bool {
-        self == Self::Small
-    }
 }
 
 /// What a part of a topic is measured with.
@@ -76,13 +71,20 @@ pub(crate) struct Context {
     pub(crate) write: bool,
     /// Names of the records that a part with a table of records is limited to; all without a name.
     pub(crate) named: Vec<String>,
-    /// Folder of results; `None` keeps them in memory.
-    store: Option<PathBuf>,
+    /// Folder of results, where they are found again; `None` keeps them in memory.
+    pub(crate) store: Option<PathBuf>,
     /// No record is begun after this.
-    deadline: Option<Instant>,
+    pub(crate) deadline: Option<Instant>,
     /// Populations that were measured in this process.
-    known: Mutex<BTreeMap<String, Arc<dyn Any + Send + Sync>>>,
-    costs: Costs,
+    pub(crate) known: Known,
+}
+
+/// Populations by name, first seed and number of records.
+#[derive(Default)]
+pub(crate) struct Known {
+    records: Mutex<BTreeMap<String, Arc<dyn Any + Send + Sync>>>,
+    /// Processor time that the full size of each takes by its records here, s.
+    full_s: Mutex<Vec<(String, f64)>>,
 }
 
 /// A population is not finished before the deadline.
@@ -114,41 +116,24 @@ impl Context {
             named: Vec::new(),
             store: None,
             deadline: None,
-            known: Mutex::default(),
-            costs: Costs::default(),
+            known: Known::default(),
         }
-    }
-
-    /// The same with results in a folder, where they are found again.
-    pub(crate) fn kept(self, store: PathBuf) -> Self {
-        Self {
-            store: Some(store),
-            ..self
-        }
-    }
-
-    /// The same until a time.
-    pub(crate) fn until(self, deadline: Option<Instant>) -> Self {
-        Self { deadline, ..self }
-    }
-
-    /// The same with leave to renew committed files.
-    pub(crate) fn writing(self, write: bool) -> Self {
-        Self { write, ..self }
-    }
-
-    /// The same limited to records of these names.
-    pub(crate) fn of_records(self, named: Vec<String>) -> Self {
-        Self { named, ..self }
     }
 
     pub(crate) fn is_small(&self) -> bool {
-        self.size.is_small()
+        self.size == Size::Small
     }
 
-    /// Processor time of the populations so far.
-    pub(crate) fn costs(&self) -> &Costs {
-        &self.costs
+    /// Whether the deadline has passed.
+    pub(super) fn is_over(&self) -> bool {
+        self.deadline.is_some_and(|end| Instant::now() > end)
+    }
+
+    /// The populations so far with the processor time of their full size, s, the dearest first.
+    pub(crate) fn dearest(&self) -> Vec<(String, f64)> {
+        let mut all = locked(&self.known.full_s).clone();
+        all.sort_by(|one, other| other.1.total_cmp(&one.1));
+        all
     }
 
     /// The figures of rows over a population; none if this size leaves the population out.
@@ -178,19 +163,14 @@ impl Context {
         let count = self.size.records(population.full, population.small);
         let first = self.seeds.first(population.first);
         let key = format!("{} {first} {count}", population.name);
-        let known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
-        let found = known.get(&key).cloned();
-        drop(known);
+        let found = locked(&self.known.records).get(&key).cloned();
         if let Some(found) = found.and_then(|found| found.downcast::<Records<R>>().ok()) {
             return Ok(found);
         }
         let outcome = self.outcome(population, first, count)?;
-        self.costs.add(Cost {
-            population: population.name.clone(),
-            seconds: outcome.successes().map(|(_, timed)| timed.s).sum(),
-            records: count,
-            full: population.full,
-        });
+        let here_s: f64 = outcome.successes().map(|(_, timed)| timed.s).sum();
+        let full_s = here_s * population.full as f64 / count.max(1) as f64;
+        locked(&self.known.full_s).push((population.name.clone(), full_s));
         let failures = outcome.failures().collect();
         let records = outcome.into_successes().map(|(_, timed)| timed.result);
         let records = Arc::new(Records {
@@ -199,8 +179,7 @@ impl Context {
             seeds: format!("{first}..{}", first + count),
             full: count >= population.full,
         });
-        let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
-        known.insert(key, records.clone());
+        locked(&self.known.records).insert(key, records.clone());
         Ok(records)
     }
 
@@ -225,11 +204,7 @@ impl Context {
             campaign = campaign.results(store.join(format!("{}-{hash}.jsonl", file_name(name))));
         }
         // In memory nothing is found again: one run of all seeds.
-        let block = if self.store.is_some() {
-            BLOCK
-        } else {
-            count.max(1)
-        };
+        let block = self.store.as_ref().map_or(count.max(1), |_| BLOCK);
         let mut done = 0;
         loop {
             done = (done + block).min(count);
@@ -241,10 +216,7 @@ impl Context {
             if done.is_multiple_of(8 * BLOCK) {
                 eprintln!("{name}: {done} of {count}");
             }
-            if self
-                .deadline
-                .is_some_and(|deadline| Instant::now() > deadline)
-            {
+            if self.is_over() {
                 let (name, of) = (name.clone(), count);
                 return Err(Unfinished { name, done, of }.into());
             }
@@ -252,22 +224,17 @@ impl Context {
     }
 }
 
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
 /// Records that could not be measured, if there are any: there must be none.
 fn failures<R>(population: &str, of: &Records<R>) -> Option<Figure> {
-    let first = of.failures.first()?;
+    let (first, count) = (of.failures.first()?, of.failures.len());
     let name = format!("{population}: records that could not be measured");
-    let mut figure = Figure::note(
-        &name,
-        format!(
-            "{} (seed {}: {})",
-            of.failures.len(),
-            first.seed,
-            first.message
-        ),
-    );
-    figure.target = "0".to_owned();
-    figure.holds = Some(false);
-    Some(figure.over(of.records.len() + of.failures.len(), of.seeds.as_str()))
+    let measured = format!("{count} (seed {}: {})", first.seed, first.message);
+    let figure = Figure::told(&name, "0", measured, false);
+    Some(figure.over(of.records.len() + count, of.seeds.as_str()))
 }
 
 /// The name with nothing but letters, digits and dashes.

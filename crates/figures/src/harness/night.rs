@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use gyrocal_testkit::workspace;
 
 use super::context::{Context, Seeds, Size, Unfinished};
-use super::topic::{Part, Topic};
+use super::topic::Topic;
 use crate::cost::process_s;
 use crate::error::Error;
 use crate::figure::Figure;
@@ -40,11 +40,11 @@ impl Night {
     pub(crate) fn run(&self, topics: &[Topic]) -> Result<Vec<Figure>, Error> {
         let size = if self.tenth { Size::Tenth } else { Size::Full };
         let results = self.results.clone();
-        let results = results.unwrap_or_else(|| workspace().join("target/night"));
-        let deadline = Instant::now().checked_add(Duration::from_secs(60 * self.minutes));
-        let context = Context::new(size, Seeds::Report)
-            .kept(results.clone())
-            .until(deadline);
+        let context = Context {
+            store: results.or_else(|| Some(workspace().join("target/night"))),
+            deadline: Instant::now().checked_add(Duration::from_secs(60 * self.minutes)),
+            ..Context::new(size, Seeds::Report)
+        };
         let (mut all, mut open) = (Vec::new(), Vec::new());
         for topic in topics {
             if !self.topics.is_empty() && !self.topics.contains(&topic.name) {
@@ -53,57 +53,41 @@ impl Night {
             let begin_s = process_s();
             for part in &topic.parts {
                 let name = format!("{} --part {}", topic.name, part.name);
-                if deadline.is_some_and(|deadline| Instant::now() > deadline) {
+                if context.is_over() {
                     open.push(name);
                     continue;
                 }
                 match (part.figures)(&context) {
                     Ok(figures) => {
                         if !self.tenth {
-                            topic.write(
-                                part,
-                                &format!("cargo figures night --topic {}", topic.name),
-                                &figures,
-                            )?;
+                            let command = format!("cargo figures night --topic {}", topic.name);
+                            topic.write(part, &command, &figures)?;
                         }
                         all.extend(figures);
                     }
                     Err(error) if error.is::<Unfinished>() => open.push(format!("{name}: {error}")),
-                    Err(error) => all.push(unmeasured(topic, part, &error)),
+                    Err(error) => {
+                        let name = format!("{name}: measured");
+                        all.push(Figure::told(&name, "yes", format!("no: {error}"), false));
+                    }
                 }
             }
             let name = format!("processor time of {}", topic.name);
-            all.push(Figure::note(
-                &name,
-                format!("{:.0} s", process_s() - begin_s),
-            ));
+            let seconds = process_s() - begin_s;
+            all.push(Figure::note(&name, format!("{seconds:.0} s")));
         }
-        let [_, full_s] = context.costs().totals();
-        let dearest = context.costs().dearest(LISTED).into_iter();
-        let dearest: Vec<String> = dearest
-            .map(|(name, s)| format!("{name} {:.2}", s / 3600.0))
-            .collect();
-        let mut hours = Figure::at_most(
-            "full size of all populations by their records here",
-            16.0,
-            full_s / 3600.0,
-            "processor hours",
-        );
-        hours.measured = format!("{}: {}", hours.measured, dearest.join(", "));
+        let dearest = context.dearest();
+        let full_h = dearest.iter().map(|(_, s)| s).sum::<f64>() / 3600.0;
+        let dearest = dearest.iter().take(LISTED);
+        let dearest = dearest.map(|(name, s)| format!("{name} {:.2}", s / 3600.0));
+        let name = "full size of all populations by their records here";
+        let mut hours = Figure::at_most(name, 16.0, full_h, "processor hours");
+        hours.measured += &format!(": {}", dearest.collect::<Vec<_>>().join(", "));
         all.push(hours);
         if !open.is_empty() {
-            let mut figure = Figure::note("parts that are not finished", open.join("; "));
-            figure.holds = Some(false);
-            all.push(figure);
+            let name = "parts that are not finished";
+            all.push(Figure::told(name, "", open.join("; "), false));
         }
         Ok(all)
     }
-}
-
-/// A part that ended with an error.
-fn unmeasured(topic: &Topic, part: &Part, error: &Error) -> Figure {
-    let name = format!("{} --part {}: measured", topic.name, part.name);
-    let mut figure = Figure::truth(&name, false);
-    figure.measured = format!("no: {error}");
-    figure
 }

@@ -113,14 +113,9 @@ fn compared_with(page: &str, renewed_by: &str, rows: &[Row], figures: &[Figure])
         if are_consistent(here, there) {
             agreeing += 1;
         } else {
-            differing.push(format!(
-                "`{}` is {:.3} of {} on the page and {:.3} of {} here",
-                figure.name,
-                there.share(),
-                there.trials,
-                here.share(),
-                here.trials
-            ));
+            let of = |one: Proportion| format!("{:.3} of {}", one.share(), one.trials);
+            let (name, here, there) = (&figure.name, of(here), of(there));
+            differing.push(format!("`{name}` is {there} on the page and {here} here"));
         }
     }
     let mut result = Vec::new();
@@ -130,9 +125,9 @@ fn compared_with(page: &str, renewed_by: &str, rows: &[Row], figures: &[Figure])
             [] => format!("{agreeing} of {compared}"),
             rows => format!("{agreeing} of {compared}: {}", rows.join("; ")),
         };
-        let mut figure = Figure::note(&format!("{page}: shares of this run agree"), measured);
-        figure.target = format!("{compared} of {compared}");
-        figure.holds = Some(differing.is_empty());
+        let name = format!("{page}: shares of this run agree");
+        let target = format!("{compared} of {compared}");
+        let figure = Figure::told(&name, &target, measured, differing.is_empty());
         result.push(figure.over(compared, "rows"));
     }
     if let Some(first) = lacking.first() {
@@ -165,12 +160,8 @@ impl Row {
     fn share(&self) -> Option<Proportion> {
         let first = self.measured.split([' ', ',']).next()?;
         let number: f64 = first.parse().ok()?;
-        let unit = if self.name.contains(": % of ") {
-            100.0
-        } else {
-            1.0
-        };
-        let share = number / unit;
+        let is_percent = self.name.contains(": % of ");
+        let share = number / if is_percent { 100.0 } else { 1.0 };
         let is_share = (0.0..=1.0).contains(&share) && first.contains('.');
         is_share.then(|| Proportion {
             hits: (share * self.runs as f64).round() as u64,
@@ -195,9 +186,10 @@ fn rows(page: &str) -> Vec<Row> {
             && inside
             && let Ok(runs) = runs.parse()
         {
+            let [name, measured] = [name, measured].map(String::clone);
             rows.push(Row {
-                name: name.clone(),
-                measured: measured.clone(),
+                name,
+                measured,
                 runs,
             });
         }

@@ -4,6 +4,7 @@ use gyrocal_evaluation::{Statistic, Target};
 use gyrocal_statistics::Proportion;
 
 use super::population::Records;
+use super::{COVERAGE, COVERAGE_REASON};
 use crate::figure::Figure;
 
 /// A statistic over the records of a population.
@@ -31,15 +32,39 @@ enum Measured {
 }
 
 impl<'a, R> Row<'a, R> {
-    /// A statistic of all records.
-    pub(crate) fn new(name: impl Into<String>, of: impl Fn(&[R]) -> Statistic + 'a) -> Self {
+    fn made(name: impl Into<String>, of: impl Fn(&[R]) -> Measured + 'a) -> Self {
         Self {
             name: name.into(),
             target: None,
             reason: "",
-            of: Box::new(move |records| Measured::Statistic(of(records))),
+            of: Box::new(of),
             remark: None,
         }
+    }
+
+    /// A statistic of all records.
+    pub(crate) fn new(name: impl Into<String>, of: impl Fn(&[R]) -> Statistic + 'a) -> Self {
+        Self::made(name, move |records| Measured::Statistic(of(records)))
+    }
+
+    /// The number of something in all records.
+    pub(crate) fn count(name: impl Into<String>, of: impl Fn(&R) -> usize + 'a) -> Self {
+        Self::new(name, move |records| {
+            let all: usize = records.iter().map(&of).sum();
+            Statistic::Value(all as f64, records.len() as u64)
+        })
+    }
+
+    /// The largest of one number a record; NaN if one is.
+    pub(crate) fn largest(name: impl Into<String>, of: impl Fn(&R) -> f64 + 'a) -> Self {
+        Self::new(name, move |records| {
+            let larger = |most: f64, one: f64| match most.is_nan() || one <= most {
+                true => most,
+                false => one,
+            };
+            let largest = records.iter().map(&of).fold(0.0, larger);
+            Statistic::Value(largest, records.len() as u64)
+        })
     }
 
     /// The share of records for which `of` is true, among those for which it is anything.
@@ -85,14 +110,11 @@ impl<'a, R> Row<'a, R> {
         Self::of_each(name, of, Statistic::RmsRatio)
     }
 
-    fn of_each<T>(
+    fn of_each<T: 'a>(
         name: impl Into<String>,
         of: impl Fn(&R) -> Option<T> + 'a,
         make: fn(Vec<T>) -> Statistic,
-    ) -> Self
-    where
-        T: 'a,
-    {
+    ) -> Self {
         Self::new(name, move |records| {
             make(records.iter().filter_map(&of).collect())
         })
@@ -100,13 +122,9 @@ impl<'a, R> Row<'a, R> {
 
     /// Words about all records, without a target.
     pub(crate) fn words(name: impl Into<String>, of: impl Fn(&[R]) -> String + 'a) -> Self {
-        Self {
-            name: name.into(),
-            target: None,
-            reason: "",
-            of: Box::new(move |records| Measured::Words(of(records), records.len())),
-            remark: None,
-        }
+        Self::made(name, move |records| {
+            Measured::Words(of(records), records.len())
+        })
     }
 
     /// With words behind the statistic.
@@ -128,6 +146,11 @@ impl<'a, R> Row<'a, R> {
     /// With both.
     pub(crate) fn between(self, range: [f64; 2], reason: &'static str) -> Self {
         self.with_target(Target::Between(range), reason)
+    }
+
+    /// With the limits of the coverage of 95 % intervals.
+    pub(crate) fn of_coverage(self) -> Self {
+        self.between(COVERAGE, COVERAGE_REASON)
     }
 
     /// With a target.

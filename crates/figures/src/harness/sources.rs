@@ -108,10 +108,8 @@ impl TryFrom<ListedSources> for Sources {
         };
         let packages = match listed.group {
             Some(group) => {
-                let mut groups = GROUPS.iter();
-                let own = groups.find(|(name, _)| *name == group);
-                own.map(|(_, packages)| *packages)
-                    .ok_or_else(|| format!("found no group `{group}`"))?
+                let own = GROUPS.iter().find(|(name, _)| *name == group);
+                own.ok_or_else(|| format!("found no group `{group}`"))?.1
             }
             None => kept(listed.packages),
         };
@@ -154,9 +152,8 @@ impl Sources {
 
     /// All files, sorted, without those that version control ignores.
     pub(crate) fn all_files(&self, root: &Path) -> Result<Vec<PathBuf>, Error> {
-        let mut paths: BTreeSet<String> =
-            self.files.iter().map(|file| (*file).to_owned()).collect();
-        paths.extend(["Cargo.toml".to_owned(), "Cargo.lock".to_owned()]);
+        let files = self.files.iter().chain(&["Cargo.toml", "Cargo.lock"]);
+        let mut paths: BTreeSet<String> = files.map(|file| (*file).to_owned()).collect();
         for (package, is_named) in closure(root, self.packages)? {
             let folder = package.to_string_lossy().into_owned();
             // The root package is a workspace, too: of its folder the parts that it is compiled from.
@@ -164,47 +161,32 @@ impl Sources {
                 paths.extend(["src", "build.rs", "codegen/derive"].map(str::to_owned));
                 continue;
             }
-            paths.insert(folder.clone());
             if !is_named {
-                let own = OWN.map(|part| format!(":(exclude){folder}/{part}"));
-                paths.extend(own);
+                paths.extend(OWN.map(|part| format!(":(exclude){folder}/{part}")));
             }
+            paths.insert(folder);
         }
-        let output = Command::new("git")
-            .arg("-C")
-            .arg(root)
-            .args([
-                "ls-files",
-                "--cached",
-                "--others",
-                "--exclude-standard",
-                "-z",
-                "--",
-            ])
-            .args(&paths)
-            .output()?;
+        let list = "ls-files --cached --others --exclude-standard -z --";
+        let mut git = Command::new("git");
+        git.arg("-C").arg(root).args(list.split(' ')).args(&paths);
+        let output = git.output()?;
         if !output.status.success() {
             let why = String::from_utf8_lossy(&output.stderr);
             return Err(format!("git does not list the sources: {why}").into());
         }
-        let names = output
-            .stdout
-            .split(|byte| *byte == 0)
-            .filter(|name| !name.is_empty());
-        let files: BTreeSet<PathBuf> = names
-            .map(|name| PathBuf::from(String::from_utf8_lossy(name).into_owned()))
-            .filter(|file| root.join(file).is_file())
-            .collect();
-        Ok(files.into_iter().collect())
+        let names = String::from_utf8_lossy(&output.stdout);
+        let names = names.split('\0').filter(|name| !name.is_empty());
+        let files: BTreeSet<PathBuf> = names.map(PathBuf::from).collect();
+        let there = files.into_iter().filter(|file| root.join(file).is_file());
+        Ok(there.collect())
     }
 }
 
 /// Folders of packages and of all that they depend on by path; `true` for those that are named.
 fn closure(root: &Path, named: &[&str]) -> Result<BTreeMap<PathBuf, bool>, Error> {
     let shared = manifest(root, Path::new(""))?;
-    let shared = shared
-        .get("workspace")
-        .and_then(|all| all.get("dependencies"));
+    let shared = shared.get("workspace");
+    let shared = shared.and_then(|all| all.get("dependencies"));
     let mut found: BTreeMap<PathBuf, bool> = BTreeMap::new();
     let mut waiting: Vec<PathBuf> = named.iter().map(PathBuf::from).collect();
     while let Some(folder) = waiting.pop() {
@@ -217,18 +199,15 @@ fn closure(root: &Path, named: &[&str]) -> Result<BTreeMap<PathBuf, bool>, Error
             true => &["dependencies", "build-dependencies", "dev-dependencies"],
             false => &["dependencies", "build-dependencies"],
         };
-        for (name, dependency) in kinds
+        let tables = kinds
             .iter()
-            .filter_map(|kind| manifest.get(*kind)?.as_table())
-            .flatten()
-        {
+            .filter_map(|kind| manifest.get(*kind)?.as_table());
+        for (name, dependency) in tables.flatten() {
+            let of_all = || shared?.get(name)?.get("path")?.as_str();
             let own = dependency.get("path").and_then(Value::as_str);
-            let path = match (own, dependency.get("workspace")) {
-                (Some(path), _) => Some(folder.join(path)),
-                (None, Some(_)) => shared
-                    .and_then(|all| all.get(name)?.get("path")?.as_str())
-                    .map(PathBuf::from),
-                (None, None) => None,
+            let path = match dependency.get("workspace") {
+                Some(_) if own.is_none() => of_all().map(PathBuf::from),
+                _ => own.map(|path| folder.join(path)),
             };
             waiting.extend(path.map(|path| plain(&path)));
         }
@@ -271,19 +250,9 @@ mod tests {
         let root = workspace();
         let plain = WATCH.hash_with(&root, |_| Ok(Vec::new())).unwrap();
         for changed in WATCH.all_files(&root).unwrap() {
-            let read = |file: &Path| {
-                Ok(if file == changed {
-                    b"x".to_vec()
-                } else {
-                    Vec::new()
-                })
-            };
-            assert_ne!(
-                WATCH.hash_with(&root, read).unwrap(),
-                plain,
-                "{}",
-                changed.display()
-            );
+            let read = |file: &Path| Ok(vec![b'x'; usize::from(file == changed)]);
+            let hash = WATCH.hash_with(&root, read).unwrap();
+            assert_ne!(hash, plain, "{}", changed.display());
         }
     }
 
@@ -291,14 +260,8 @@ mod tests {
     fn dependencies_by_path_are_sources_but_not_their_tests() {
         let files = WATCH.all_files(&workspace()).unwrap();
         let has = |file: &str| files.iter().any(|one| one == Path::new(file));
-        for file in [
-            "crates/watch/src/lib.rs",
-            "crates/watch/tests/dense.rs",
-            "LICENSE-MIT",
-        ] {
-            assert!(has(file), "{file}");
-        }
-        assert!(has("crates/scalar/src/lib.rs") && has("Cargo.lock"));
+        assert!(has("crates/watch/src/lib.rs") && has("crates/watch/tests/dense.rs"));
+        assert!(has("LICENSE-MIT") && has("crates/scalar/src/lib.rs") && has("Cargo.lock"));
         assert!(!has("crates/scalar/tests/single_precision.rs"));
         assert!(!has("crates/diagnosis/src/lib.rs"));
     }

@@ -38,30 +38,26 @@ pub(crate) struct Part {
     /// What can move its figures, beside this program.
     #[serde(flatten)]
     pub(crate) sources: Sources,
-    #[serde(skip, default = "unmeasured")]
+    #[serde(skip, default = "nothing")]
     pub(crate) figures: Measure,
     #[serde(skip)]
     pub(crate) introduction: Option<Introduce>,
 }
 
-/// Measures nothing.
-fn unmeasured() -> Measure {
+fn nothing() -> Measure {
     |_| Ok(Vec::new())
 }
 
 impl Topic {
-    /// The figures of the parts of these names, of all parts without a name; `told` has those of each part as soon
-    /// as they are there.
+    /// The figures of the parts of these names, of all parts without a name.
     pub(crate) fn figures(
         &self,
         context: &Context,
         parts: &[String],
-        mut told: impl FnMut(&Part, &[Figure]) -> Result<(), Error>,
     ) -> Result<Vec<Figure>, Error> {
-        if let Some(unknown) = parts.iter().find(|name| self.part(name).is_none()) {
-            let known: Vec<&str> = self.parts.iter().map(|part| &*part.name).collect();
-            let known = known.join(", ");
-            let topic = &self.name;
+        let known = self.names();
+        if let Some(unknown) = parts.iter().find(|name| !known.contains(&name.as_str())) {
+            let (topic, known) = (&self.name, known.join(", "));
             return Err(format!("{topic} has no part `{unknown}`; expected one of {known}").into());
         }
         let mut figures = Vec::new();
@@ -70,15 +66,13 @@ impl Topic {
             if !asked && (!parts.is_empty() || (context.is_small() && part.slow)) {
                 continue;
             }
-            let of_part = (part.figures)(context)?;
-            told(part, &of_part)?;
-            figures.extend(of_part);
+            figures.extend((part.figures)(context)?);
         }
         Ok(figures)
     }
 
-    pub(crate) fn part(&self, name: &str) -> Option<&Part> {
-        self.parts.iter().find(|part| part.name == name)
+    fn names(&self) -> Vec<&str> {
+        self.parts.iter().map(|part| &*part.name).collect()
     }
 
     /// Writes the section of a part into the page of the topic.
@@ -88,11 +82,10 @@ impl Topic {
         command: &str,
         figures: &[Figure],
     ) -> Result<(), Error> {
-        let names: Vec<&str> = self.parts.iter().map(|part| &*part.name).collect();
         let introduction = part.introduction.map_or_else(String::new, |of| of(figures));
         let table = table_of(figures);
         let table = [introduction.trim_end(), &table].join("\n\n");
         let body = pages::section(part, command, table.trim_start())?;
-        pages::write_section(&self.name, &part.name, &names, &body)
+        pages::write_section(&self.name, &part.name, &self.names(), &body)
     }
 }

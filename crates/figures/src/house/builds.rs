@@ -40,30 +40,23 @@ fn ratio(root: &Path) -> Result<Vec<Figure>, Error> {
     let mut times = Vec::new();
     for commit in [EARLIER, "HEAD"] {
         let tree = scratch.path().join(commit);
-        let mut clone = Command::new("git");
-        clone
-            .args(["clone", "--quiet", "--no-checkout"])
-            .args([root, &tree]);
-        let mut checkout = Command::new("git");
-        checkout
-            .arg("-C")
-            .arg(&tree)
-            .args(["checkout", "--quiet", commit]);
-        if !clone.status()?.success() || !checkout.status()?.success() {
+        let (mut clone, mut checkout) = (Command::new("git"), Command::new("git"));
+        clone.args(["clone", "--quiet", "--no-checkout"]);
+        checkout.arg("-C").arg(&tree).args(["checkout", "--quiet"]);
+        let cloned = clone.args([root, &tree]).status()?.success();
+        if !cloned || !checkout.arg(commit).status()?.success() {
             let why = format!("not measured: the history holds no commit {commit}");
             return Ok(vec![Figure::note(&name, why)]);
         }
-        run(cargo(&tree, &tree.join("target")).args(["fetch"])).succeeded();
+        let cargo = || cargo(&tree, &tree.join("target"));
+        run(cargo().arg("fetch")).succeeded();
         let begin = Instant::now();
-        run(cargo(&tree, &tree.join("target")).args(["build", "--release", "--timings"]))
-            .succeeded();
+        run(cargo().args(["build", "--release", "--timings"])).succeeded();
         times.push(begin.elapsed().as_secs_f64());
     }
     let ratio = times[1] / times[0];
-    let figure = Figure {
-        measured: format!("{ratio:.2} ({:.0} s over {:.0} s)", times[1], times[0]),
-        ..Figure::at_most(&name, LARGEST_RATIO, ratio, "")
-    };
+    let mut figure = Figure::at_most(&name, LARGEST_RATIO, ratio, "");
+    figure.measured = format!("{ratio:.2} ({:.0} s over {:.0} s)", times[1], times[0]);
     let split = split(&scratch.path().join("HEAD/target/cargo-timings"))?;
     let command = scratch.path().join("HEAD/target/release/gyrocal");
     let size = std::fs::metadata(command)?.len() as f64 / 1e6;
@@ -84,12 +77,10 @@ struct Unit {
 /// The packages that take longest to build, from cargo's page of timings.
 fn split(folder: &Path) -> Result<String, Error> {
     let page = std::fs::read_to_string(folder.join("cargo-timing.html"))?;
-    let units: Vec<Unit> = page
-        .split_once("const UNIT_DATA = ")
-        .and_then(|(_, rest)| rest.split_once("];"))
-        .map(|(list, _)| serde_json::from_str(&format!("{list}]")))
-        .transpose()?
-        .unwrap_or_default();
+    let list = page.split_once("const UNIT_DATA = ");
+    let list = list.and_then(|(_, rest)| rest.split_once("];"));
+    let list = list.map_or_else(|| "[]".to_owned(), |(list, _)| format!("{list}]"));
+    let units: Vec<Unit> = serde_json::from_str(&list)?;
     let mut packages = BTreeMap::new();
     for unit in units {
         *packages.entry(unit.name).or_insert(0.0) += unit.duration;
@@ -97,8 +88,8 @@ fn split(folder: &Path) -> Result<String, Error> {
     let mut packages: Vec<(String, f64)> = packages.into_iter().collect();
     packages.sort_by(|a, b| b.1.total_cmp(&a.1));
     let listed = packages.iter().take(LISTED);
-    let listed: Vec<String> = listed.map(|(name, s)| format!("{name} {s:.0}")).collect();
-    Ok(listed.join(", "))
+    let listed = listed.map(|(name, s)| format!("{name} {s:.0}"));
+    Ok(listed.collect::<Vec<_>>().join(", "))
 }
 
 /// The last run of `.ci/run`.
@@ -129,23 +120,14 @@ fn sections(root: &Path) -> Result<Vec<Figure>, Error> {
     let run: Run = toml::from_str(&text)?;
     let seeds = format!("run of commit {}", run.commit);
     let units = run.gate_s / run.unit_s;
-    let gate = Figure::at_most(&gate, GATE, units / run.earlier_units, "");
+    let mut gate = Figure::at_most(&gate, GATE, units / run.earlier_units, "");
+    gate.measured += &format!(" ({units:.1} units of {} s)", run.unit_s);
     let slow = format!("slow sections together ({})", run.slow);
+    let slow = Figure::at_most(&slow, SLOW_MIN, run.slow_s / 60.0, "min");
     let compiled = "compilations of the tree by the gate";
-    let compiled = Figure::at_most(compiled, COMPILATIONS, run.compiled_gate, "");
-    let all = [
-        Figure {
-            measured: format!("{} ({units:.1} units of {} s)", gate.measured, run.unit_s),
-            ..gate
-        },
-        Figure::at_most(&slow, SLOW_MIN, run.slow_s / 60.0, "min"),
-        Figure {
-            measured: format!(
-                "{}, with slow sections {}",
-                run.compiled_gate, run.compiled_all
-            ),
-            ..compiled
-        },
-    ];
+    let mut compiled = Figure::at_most(compiled, COMPILATIONS, run.compiled_gate, "");
+    let [by_gate, all] = [run.compiled_gate, run.compiled_all];
+    compiled.measured = format!("{by_gate}, with slow sections {all}");
+    let all = [gate, slow, compiled];
     Ok(all.map(|figure| figure.over(1, seeds.as_str())).into())
 }

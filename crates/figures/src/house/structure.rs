@@ -7,6 +7,7 @@ use std::path::Path;
 use gyrocal::EFFECTS;
 use gyrocal_testkit::snapshot;
 
+use super::packages;
 use crate::harness::{Error, Figure};
 
 /// Lines that a file may have.
@@ -21,15 +22,8 @@ const AFTER: [&str; 5] = ["=> ", "| ", "= ", "== ", "!= "];
 
 /// A row for each, of all packages of the workspace.
 pub(super) fn figures(root: &Path) -> Result<[Figure; 3], Error> {
-    let mut packages = ["", "codegen/emit", "codegen/plant"]
-        .map(|of| root.join(of))
-        .to_vec();
-    for package in std::fs::read_dir(root.join("crates"))? {
-        packages.push(package?.path());
-    }
-    packages.sort();
     let (mut compared, mut circular, mut long) = (Vec::new(), Vec::new(), Vec::new());
-    for package in packages {
+    for package in packages(root)? {
         let name = package.strip_prefix(root)?.join("src");
         let mut files = Vec::new();
         for (path, bytes) in snapshot(&package.join("src")) {
@@ -52,10 +46,9 @@ pub(super) fn figures(root: &Path) -> Result<[Figure; 3], Error> {
     let files = format!("files above {FILE_LINES} lines");
     let rows = [(literals, compared), (cycles, circular), (&files, long)];
     Ok(rows.map(|(name, places)| {
-        let count = Figure::at_most(name, 0.0, places.len() as f64, "");
-        let measured = format!("{} {}", count.measured, places.join("; "));
+        let measured = format!("{} {}", places.len(), places.join("; "));
         let measured = measured.trim_end().to_owned();
-        Figure { measured, ..count }.over(1, "this tree")
+        Figure::told(name, "<= 0", measured, places.is_empty()).over(1, "this tree")
     }))
 }
 
@@ -129,9 +122,8 @@ fn cycle(files: &[(Vec<String>, String)]) -> Vec<&str> {
                 let most = if group.is_some() { usize::MAX } else { 1 };
                 let names = words(group.unwrap_or(used)).take(most);
                 let used = names.filter_map(|name| owners.get(name)).copied();
-                uses.entry(top)
-                    .or_default()
-                    .extend(used.filter(|used| used != top));
+                let others = used.filter(|used| used != top);
+                uses.entry(top).or_default().extend(others);
             }
         }
     }

@@ -20,11 +20,7 @@ const STEPS: u32 = 512;
 const TOLERANCE: f64 = 0.02;
 
 /// Variables with flags of the compiler.
-const FLAGS: [&str; 3] = [
-    "RUSTFLAGS",
-    "CARGO_ENCODED_RUSTFLAGS",
-    "CARGO_BUILD_RUSTFLAGS",
-];
+const FLAGS: &str = "RUSTFLAGS CARGO_ENCODED_RUSTFLAGS CARGO_BUILD_RUSTFLAGS";
 
 /// Counts of a step by the rules, with compiler and target.
 #[derive(Debug, Deserialize, Serialize)]
@@ -64,13 +60,10 @@ pub(crate) fn figures(write: bool) -> Result<Vec<Figure>, Error> {
     ] {
         let range = [1.0 - TOLERANCE, 1.0 + TOLERANCE].map(|bound| bound * expected);
         let name = format!("{rule} step: instructions under callgrind");
-        let figure = Figure::within(&name, range, measured);
-        figures.push(Figure {
-            target: format!("{expected:.0} within {} %", TOLERANCE * 100.0),
-            measured: format!("{measured:.0}"),
-            holds: figure.holds.filter(|_| here == there),
-            ..figure
-        });
+        let target = format!("{expected:.0} within {} %", TOLERANCE * 100.0);
+        let holds = (range[0]..=range[1]).contains(&measured);
+        let figure = Figure::told(&name, &target, format!("{measured:.0}"), holds);
+        figures.push(figure.judged(here == there));
     }
     if here != there {
         figures.push(not_judged(format!(
@@ -82,10 +75,10 @@ pub(crate) fn figures(write: bool) -> Result<Vec<Figure>, Error> {
 
 /// The counts, or the reason why they are not available here.
 fn counted() -> Result<Result<Counts, String>, Error> {
-    if let Some(flags) = FLAGS.iter().find(|flags| std::env::var_os(flags).is_some()) {
-        return Ok(Err(format!(
-            "they belong to a plain build, and {flags} is set"
-        )));
+    let mut flags = FLAGS.split(' ');
+    if let Some(flags) = flags.find(|flags| std::env::var_os(flags).is_some()) {
+        let why = format!("they belong to a plain build, and {flags} is set");
+        return Ok(Err(why));
     }
     let Some(valgrind) = tool(Tool::Valgrind) else {
         return Ok(Err(Tool::Valgrind.missing()));
@@ -108,18 +101,10 @@ fn counted() -> Result<Result<Counts, String>, Error> {
 
 /// Builds the example; returns its path. What it depends on is built with this program.
 fn filter_steps() -> Result<PathBuf, Error> {
-    let messages = output(
-        Command::new(cargo())
-            .current_dir(root())
-            .args([
-                "build",
-                "--release",
-                "--quiet",
-                "--package",
-                env!("CARGO_PKG_NAME"),
-            ])
-            .args(["--example", "filter_steps", "--message-format", "json"]),
-    )?;
+    let build = "build --release --quiet --example filter_steps --message-format json --package";
+    let mut command = Command::new(cargo());
+    command.current_dir(root()).args(build.split(' '));
+    let messages = output(command.arg(env!("CARGO_PKG_NAME")))?;
     let path = messages.lines().find_map(|line| {
         let (_, rest) = line.split_once("\"executable\":\"")?;
         Some(PathBuf::from(rest.split('"').next()?))
@@ -133,12 +118,9 @@ pub(crate) fn instructions(
     program: &Path,
     arguments: &[&str],
 ) -> Result<f64, Error> {
-    let report = output(
-        Command::new(valgrind)
-            .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
-            .arg(program)
-            .args(arguments),
-    )?;
+    let mut command = Command::new(valgrind);
+    command.args(["--tool=callgrind", "--callgrind-out-file=/dev/null"]);
+    let report = output(command.arg(program).args(arguments))?;
     let mut lines = report.lines();
     let collected = lines.find_map(|line| line.split_once("Collected :"));
     let (_, count) = collected.ok_or("callgrind printed no line `Collected :`")?;

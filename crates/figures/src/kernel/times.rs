@@ -34,40 +34,32 @@ const STEPS_OF_SIZE: usize = 120;
 const OVER_SQUARE: f64 = 1.3;
 
 pub(super) fn figures() -> Result<Vec<Figure>, Error> {
-    let mut figures = vec![Figure::note(
-        "target features of this build",
-        target_features(),
-    )];
+    let features = target_features();
+    let mut figures = vec![Figure::note("target features of this build", features)];
     for (processor, least) in BUILDS {
         if processor.is_empty() || has_x86_64_v3() {
             figures.extend(of_build(processor, least)?);
         } else {
             let name = format!("steps built for {processor} not timed");
-            figures.push(Figure::note(
-                &name,
-                "this machine has no x86-64-v3".to_owned(),
-            ));
+            let why = "this machine has no x86-64-v3".to_owned();
+            figures.push(Figure::note(&name, why));
         }
     }
     figures.extend(beside_other_packages()?);
     for (rule, integration) in RULES {
         figures.extend(by_states(rule, integration)?);
     }
-    Ok(figures
-        .into_iter()
-        .map(|figure| figure.over(ROUNDS, ""))
-        .collect())
+    let figures = figures.into_iter();
+    Ok(figures.map(|one| one.over(ROUNDS, "")).collect())
 }
 
 /// Figures of a build of the example `step_times`. Builds for other processors stay apart: the flags would make
 /// cargo build everything again.
 fn of_build(processor: &str, least: [Option<f64>; 2]) -> Result<Vec<Figure>, Error> {
+    let run = "run --release --quiet --package gyrocal --example step_times --";
     let mut command = Command::new(cargo());
-    command
-        .current_dir(root())
-        .args(["run", "--release", "--quiet"]);
-    command.args(["--package", "gyrocal", "--example", "step_times"]);
-    command.args(["--", &ROUNDS.to_string()]);
+    command.current_dir(root()).args(run.split(' '));
+    command.arg(ROUNDS.to_string());
     if !processor.is_empty() {
         let target = root().join("target/figures").join(processor);
         command.env("RUSTFLAGS", format!("-C target-cpu={processor}"));
@@ -86,9 +78,8 @@ fn of_build(processor: &str, least: [Option<f64>; 2]) -> Result<Vec<Figure>, Err
         let numbers = line.unwrap_or_default().split_whitespace();
         let numbers: Vec<f64> = numbers.map(str::parse).collect::<Result<_, _>>()?;
         let [ours, dense, factors, _, of_dense, of_factors] = numbers[..] else {
-            return Err(
-                format!("the example step_times printed no times of {rule}: {printed}").into(),
-            );
+            let why = format!("the example step_times printed no times of {rule}: {printed}");
+            return Err(why.into());
         };
         let what = format!("{rule} step{build}: time of dense_joseph / of the kernel");
         figures.push(match least {
@@ -125,11 +116,8 @@ fn by_states(rule: &str, integration: Integration) -> Result<Vec<Figure>, Error>
         let mut times = [0.0; SIZES.len()];
         for (time, start) in times.iter_mut().zip(&starts) {
             let mut filter = black_box(start.clone());
-            *time = seconds(|| {
-                samples
-                    .iter()
-                    .try_for_each(|sample| step(&mut filter, sample))
-            })?;
+            let mut step = |sample| step(&mut filter, sample);
+            *time = seconds(|| samples.iter().try_for_each(&mut step))?;
             black_box(&filter);
         }
         Ok::<_, EstimationError>(times)
@@ -147,14 +135,11 @@ fn by_states(rule: &str, integration: Integration) -> Result<Vec<Figure>, Error>
     Ok(figures)
 }
 
-#[cfg(target_arch = "x86_64")]
 pub(crate) fn has_x86_64_v3() -> bool {
-    std::arch::is_x86_feature_detected!("avx2")
+    #[cfg(target_arch = "x86_64")]
+    return std::arch::is_x86_feature_detected!("avx2")
         && std::arch::is_x86_feature_detected!("fma")
-        && std::arch::is_x86_feature_detected!("bmi2")
-}
-
-#[cfg(not(target_arch = "x86_64"))]
-pub(crate) fn has_x86_64_v3() -> bool {
+        && std::arch::is_x86_feature_detected!("bmi2");
+    #[cfg(not(target_arch = "x86_64"))]
     false
 }

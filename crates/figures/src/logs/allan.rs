@@ -9,7 +9,7 @@ use gyrocal_truth::units::sensor_noise::{Filter, SensorNoise};
 use serde::{Deserialize, Serialize};
 
 use super::logs;
-use crate::harness::{COVERAGE, COVERAGE_REASON, Context, Error, Figure, Row};
+use crate::harness::{Context, Error, Figure, Row};
 
 /// Purpose of the stream of draws.
 const LEVELS: u64 = 1801;
@@ -33,13 +33,12 @@ const KINDS: [(Kind, &str); 6] = [
     (Kind::Clean, "clean"),
     (Kind::Spikes, "spikes, 1 of 1000 samples"),
     (Kind::Tone, "a tone"),
-    (
-        Kind::Filtered,
-        "a low-pass filter, corner 0.012 to 0.4 of the rate",
-    ),
+    (Kind::Filtered, FILTERED),
     (Kind::Quantised, "quantised"),
     (Kind::Held, "held samples"),
 ];
+
+const FILTERED: &str = "a low-pass filter, corner 0.012 to 0.4 of the rate";
 
 /// Result for one record.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -71,31 +70,20 @@ fn rows() -> Vec<Row<'static, Record>> {
             one.covered.into_iter().take(own).flatten()
         }));
     }
-    let cover = |row: Row<'static, Record>| row.between(COVERAGE, COVERAGE_REASON);
+    let cover = |row: Row<'static, Record>| row.of_coverage();
     let mut rows: Vec<Row<'_, Record>> = rows.into_iter().map(cover).collect();
     let halves = |records: &[Record]| {
-        let halves = records
-            .iter()
-            .flat_map(|one| one.halves.into_iter().flatten());
+        let halves = records.iter().flat_map(|one| one.halves).flatten();
         Statistic::RmsRatio(halves.map(|z| [z, 1.0]).collect())
     };
+    let between = "Allan, between halves of one record: rms z of parts told within a half";
+    let reason = "one is expected; a tenth of sigma for the normal shape of intervals";
+    let told = "Allan, records whose tone, filter or repetition is told, and no other";
+    let sums = "Allan, records with coefficients: the others are told to be no sum of the parts";
     rows.extend([
-        Row::new(
-            "Allan, between halves of one record: rms z of parts told within a half",
-            halves,
-        )
-        .between(
-            [0.9, 1.1],
-            "one is expected; a tenth of sigma for the normal shape of intervals",
-        ),
-        Row::share(
-            "Allan, records whose tone, filter or repetition is told, and no other",
-            |one: &Record| Some(one.told),
-        ),
-        Row::share(
-            "Allan, records with coefficients: the others are told to be no sum of the parts",
-            |one: &Record| Some(one.covered[1].is_some()),
-        ),
+        Row::new(between, halves).between([0.9, 1.1], reason),
+        Row::share(told, |one: &Record| Some(one.told)),
+        Row::share(sums, |one: &Record| Some(one.covered[1].is_some())),
     ]);
     rows
 }
@@ -116,11 +104,7 @@ fn record(seed: u64) -> Result<Record, Error> {
         Filter::MovingMean(2 + time as usize),
     ];
     let noise = SensorNoise {
-        quantisation: if kind == Kind::Quantised {
-            quantised
-        } else {
-            0.0
-        },
+        quantisation: f64::from(kind == Kind::Quantised) * quantised,
         random_walk: 1.0,
         bias_instability: 1.0 / (NoisePart::FLAT_VARIANCE * flat).sqrt(),
         rate_random_walk: 3.0_f64.sqrt() / walk,
@@ -136,12 +120,8 @@ fn record(seed: u64) -> Result<Record, Error> {
     let middle = rates.len() / 2;
     let first = fitted(&rates[..middle], interval_s)?;
     let last = fitted(&rates[middle..], interval_s)?;
-    let truth = [
-        noise.quantisation,
-        1.0,
-        noise.bias_instability,
-        noise.rate_random_walk,
-    ];
+    let (flicker, walk) = (noise.bias_instability, noise.rate_random_walk);
+    let truth = [noise.quantisation, 1.0, flicker, walk];
     let covered = |part: usize| {
         let [low, high] = whole.coefficients[part].interval?;
         Some((low..=high).contains(&truth[part]))
@@ -155,10 +135,9 @@ fn record(seed: u64) -> Result<Record, Error> {
     Ok(Record {
         kind,
         covered: core::array::from_fn(covered),
-        halves: core::array::from_fn(|part| {
-            is_told(&whole, part)
-                .then(|| difference(&first, &last, part))
-                .flatten()
+        halves: [0, 1, 2, 3].map(|part| {
+            let difference = difference(&first, &last, part)?;
+            is_told(&whole, part).then_some(difference)
         }),
         told: found == expected && whole.tones.len() < 2,
     })

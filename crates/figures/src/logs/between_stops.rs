@@ -13,8 +13,8 @@ use gyrocal_truth::units::sensor_noise::SensorNoise;
 use nalgebra::{DMatrix, DVector, Vector3};
 use serde::{Deserialize, Serialize};
 
-use super::logs;
 use super::unit::DEG_PER_H;
+use super::{REACHED, in_a_set, logs};
 use crate::harness::{Context, Error, Figure, Row};
 
 /// Purpose of the stream of draws.
@@ -68,11 +68,10 @@ struct Test {
 pub(super) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
     let mut figures = Vec::new();
     for (stops, first, size, least) in TESTS {
-        let population = logs(
-            &format!("between-stops-{stops}"),
-            [first, FULL, SMALL],
-            move |seed| test(stops, size, seed),
-        );
+        let (name, job) = (format!("between-stops-{stops}"), move |seed| {
+            test(stops, size, seed)
+        });
+        let population = logs(&name, [first, FULL, SMALL], job);
         figures.extend(context.measure(&population, &rows(stops, size, least))?);
     }
     Ok(figures)
@@ -82,50 +81,28 @@ fn rows(stops: usize, size: f64, least: f64) -> Vec<Row<'static, Test>> {
     let mut rows = Vec::new();
     for (noise, (name, _)) in NOISES.iter().enumerate() {
         let of = |what: &str| format!("{stops} stops, {name}: {what}");
-        rows.push(
-            Row::share(of("a term named in sound gyros"), move |test: &Test| {
-                let sound = test.noise == noise && test.hidden.is_none();
-                sound.then_some(!test.found.is_empty())
-            })
-            .at_most(0.021, "1 % is promised; of a thousand, 21 hold 99.9 %"),
-        );
-        rows.push(
-            Row::each(of("coefficients in their intervals"), move |test: &Test| {
-                let sound = test.noise == noise && test.hidden.is_none();
-                if sound {
-                    test.within.clone()
-                } else {
-                    Vec::new()
-                }
-            })
-            .at_least(
-                0.93,
-                "95 %; more in white noise, which no stop shows to be all there is",
-            ),
-        );
+        let is_sound = move |test: &Test| test.noise == noise && test.hidden.is_none();
+        let named = move |test: &Test| is_sound(test).then_some(!test.found.is_empty());
+        let within = move |test: &Test| match is_sound(test) {
+            true => test.within.clone(),
+            false => Vec::new(),
+        };
+        let white = "95 %; more in white noise, which no stop shows to be all there is";
+        rows.extend([
+            Row::share(of("a term named in sound gyros"), named)
+                .at_most(0.021, "1 % is promised; of a thousand, 21 hold 99.9 %"),
+            Row::each(of("coefficients in their intervals"), within).at_least(0.93, white),
+        ]);
     }
-    let hidden = |test: &Test| test.hidden.is_some();
-    rows.push(
-        Row::share(
-            format!("{stops} stops: terms of {size:.0} sigma found"),
-            move |test: &Test| hidden(test).then_some(!test.found.is_empty()),
-        )
-        .at_least(
-            least,
-            "what a test that does not know the scatter can reach",
-        ),
-    );
-    rows.push(
-        Row::share(
-            format!("{stops} stops: terms of {size:.0} sigma, where found, in their set"),
-            |test: &Test| {
-                let hidden = test.hidden.as_ref()?;
-                let in_a_set = test.found.iter().any(|names| names.contains(hidden));
-                (!test.found.is_empty()).then_some(in_a_set)
-            },
-        )
+    let of = |what: &str| format!("{stops} stops: terms of {size:.0} sigma{what}");
+    let found = |test: &Test| test.hidden.as_ref().map(|_| !test.found.is_empty());
+    rows.extend([
+        Row::share(of(" found"), found).at_least(least, REACHED),
+        Row::share(of(", where found, in their set"), |test: &Test| {
+            in_a_set(test.hidden.as_ref()?, &test.found)
+        })
         .at_least(0.95, "sets of 95 %"),
-    );
+    ]);
     rows
 }
 
@@ -143,20 +120,18 @@ fn test(stops: usize, size: f64, seed: u64) -> Result<Test, InstrumentError> {
         ..SensorNoise::default()
     };
     let samples = stops * (STOP + TURN);
-    let mut rates: Vec<Vec<f64>> = (0..3)
-        .map(|gyro| law.rates(samples, seed * 3 + gyro))
-        .collect();
+    let rates = (0..3).map(|gyro| law.rates(samples, seed * 3 + gyro));
+    let mut rates: Vec<Vec<f64>> = rates.collect();
     for rates in &mut rates {
         for stop in rates.chunks_exact_mut(STOP + TURN) {
             let own = ERROR_DEG_PER_H * scatter * draw.normal();
             stop.iter_mut().for_each(|rate| *rate += own);
         }
     }
-    let hidden = if hides {
-        let sigma = ERROR_DEG_PER_H * (1.0 + scatter * scatter).sqrt();
-        hide(&mut rates, &forces, size * sigma, &mut draw)
-    } else {
-        None
+    let sigma = ERROR_DEG_PER_H * (1.0 + scatter * scatter).sqrt();
+    let hidden = match hides {
+        true => hide(&mut rates, &forces, size * sigma, &mut draw),
+        false => None,
     };
     let positions = positions(&rates, &forces)?;
     let (found, within) = tested(&positions)?;
@@ -191,17 +166,12 @@ fn hide(
     /// Least length of a column beside the nominal law.
     const LEAST_LEFT: f64 = 0.3;
     let gyro = (3.0 * draw.uniform()) as usize;
-    let terms = Term::catalogue(gyro);
-    let terms: Vec<Term> = terms
-        .into_iter()
-        .filter(|term| *term != Term::Ramp)
-        .collect();
+    let mut terms: Vec<Term> = Term::catalogue(gyro).into_iter().collect();
+    terms.retain(|term| *term != Term::Ramp);
     let term = terms[(terms.len() as f64 * draw.uniform()) as usize];
     let of = |force: &Vector3<f64>, term: Term| -> f64 {
-        term.factors(gyro)
-            .into_iter()
-            .map(|axis| force[axis])
-            .product()
+        let factors = term.factors(gyro).into_iter();
+        factors.map(|axis| force[axis]).product()
     };
     let column = DVector::from_iterator(forces.len(), forces.iter().map(|force| of(force, term)));
     let law = DMatrix::from_fn(forces.len(), Term::NOMINAL.len(), |stop, power| {
@@ -225,9 +195,8 @@ fn positions(rates: &[Vec<f64>], forces: &[Vector3<f64>]) -> Result<Positions, I
     let gyro = (0..samples).map(|at| core::array::from_fn(|axis| rates[axis][at] * DEG_PER_H));
     let accel = (0..samples).map(|at| forces[at / (STOP + TURN)].into());
     let log = Log::from_samples(1.0, gyro.collect(), accel.collect());
-    let stops: Vec<Range<usize>> = (0..forces.len())
-        .map(|stop| stop * (STOP + TURN)..stop * (STOP + TURN) + STOP)
-        .collect();
+    let begins = (0..forces.len()).map(|stop| stop * (STOP + TURN));
+    let stops: Vec<Range<usize>> = begins.map(|from| from..from + STOP).collect();
     let instrument = Instrument {
         accel: None,
         outputs_per_rad_per_s: [1.0; 3],

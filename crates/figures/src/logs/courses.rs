@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::unit::{DEG_PER_H, Unit};
 use super::{described, logs};
-use crate::harness::{COVERAGE, COVERAGE_REASON, Context, Error, Figure, Row};
+use crate::harness::{Context, Error, Figure, Row};
 
 /// Purpose of the stream of draws.
 const COURSES: u64 = 1807;
@@ -54,15 +54,13 @@ enum Kind {
 }
 
 impl Course {
-    fn is_of(&self, kind: Kind) -> Option<()> {
-        (self.kind == kind).then_some(())
-    }
-
     fn has(&self, name: &str) -> bool {
-        self.found
-            .iter()
-            .any(|names| names.iter().any(|one| one.ends_with(name)))
+        self.found.iter().any(|names| is_of(names, name))
     }
+}
+
+fn is_of(names: &[String], end: &str) -> bool {
+    names.iter().any(|one| one.ends_with(end))
 }
 
 pub(super) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
@@ -72,54 +70,40 @@ pub(super) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
 
 fn rows() -> [Row<'static, Course>; 6] {
     let of = |what: &str| format!("logs with a course of temperature: {what}");
+    let share = |what: &str, kind: Kind, is: fn(&Course) -> bool| {
+        Row::share(of(what), move |log: &Course| {
+            (log.kind == kind).then(|| is(log))
+        })
+    };
+    let any = "1 % for each of three gyros, and as much again for noise that is estimated";
+    let sets = "sets of 95 %, and two of a hundred that are not found";
+    let second = "a second name that the first one does not explain, at 1 % a gyro";
+    let step_alone = |log: &Course| {
+        let alone = |set: &Vec<String>| is_of(set, ".step") && !is_of(set, "_hysteresis");
+        log.found.iter().any(alone)
+    };
+    let play = "hysteresis of half a play of 0.06 to 0.4 in a set";
+    let beside = "a step beside hysteresis without it in the set";
     [
-        Row::share(of("an effect in a sound log"), |log: &Course| {
-            log.is_of(Kind::Sound).map(|()| !log.found.is_empty())
+        share("an effect in a sound log", Kind::Sound, |log| {
+            !log.found.is_empty()
         })
-        .at_most(
-            0.04,
-            "1 % for each of three gyros, and as much again for noise that is estimated",
-        ),
-        Row::share(of("a step of 10 to 20 sigma in a set"), |log: &Course| {
-            log.is_of(Kind::Step).map(|()| log.has(".step"))
+        .at_most(0.04, any),
+        share("a step of 10 to 20 sigma in a set", Kind::Step, |log| {
+            log.has(".step")
         })
-        .at_least(
-            0.93,
-            "sets of 95 %, and two of a hundred that are not found",
-        ),
+        .at_least(0.93, sets),
         Row::share(
             of("the size of the step in its interval"),
             |log: &Course| log.size,
         )
-        .between(COVERAGE, COVERAGE_REASON),
+        .of_coverage(),
         Row::median(of("its instant off, in blocks"), |log: &Course| {
             log.blocks_off
         })
         .at_most(0.5, "a block or more if steps were at the ends of blocks"),
-        Row::share(
-            of("hysteresis of half a play of 0.06 to 0.4 in a set"),
-            |log: &Course| log.is_of(Kind::Hysteresis).map(|()| log.has("_hysteresis")),
-        )
-        .at_least(
-            0.93,
-            "sets of 95 %, and two of a hundred that are not found",
-        ),
-        Row::share(
-            of("a step beside hysteresis without it in the set"),
-            |log: &Course| {
-                log.is_of(Kind::Hysteresis).map(|()| {
-                    let alone = |names: &Vec<String>| {
-                        let is = |name: &str| names.iter().any(|one| one.ends_with(name));
-                        is(".step") && !is("_hysteresis")
-                    };
-                    log.found.iter().any(alone)
-                })
-            },
-        )
-        .at_most(
-            0.03,
-            "a second name that the first one does not explain, at 1 % a gyro",
-        ),
+        share(play, Kind::Hysteresis, |log| log.has("_hysteresis")).at_least(0.93, sets),
+        share(beside, Kind::Hysteresis, step_alone).at_most(0.03, second),
     ]
 }
 
@@ -140,36 +124,34 @@ fn course(seed: u64) -> Result<Course, InstrumentError> {
         (unit.flicker, unit.walk) = (FLICKER * of_block, 0.0);
     }
     let up = vector(&mut draw).normalize();
-    let mut log = unit
-        .log(up, [seconds, RATE_HZ], |_| 0.0, &mut draw, seed)
-        .log;
+    let made = unit.log(up, [seconds, RATE_HZ], |_| 0.0, &mut draw, seed);
+    let mut log = made.log;
     let samples = log.len();
     let share = |sample: usize| sample as f64 / samples as f64;
     let swing = 0.1 * draw.normal();
-    let temperature: Vec<f64> = (0..samples)
-        .map(|sample| {
-            let angle = core::f64::consts::PI * share(sample);
-            20.0 + RANGE_K * (angle.sin() + swing * (3.0 * angle).sin())
-        })
-        .collect();
+    let celsius = |sample| {
+        let angle = core::f64::consts::PI * share(sample);
+        20.0 + RANGE_K * (angle.sin() + swing * (3.0 * angle).sin())
+    };
+    let temperature: Vec<f64> = (0..samples).map(celsius).collect();
     let duration_s = seconds as f64;
-    let of_walk = unit.walk * duration_s.sqrt();
-    let sigma = (2.0 * white / duration_s.sqrt())
+    let root_s = duration_s.sqrt();
+    let sigma = (2.0 * white / root_s)
         .hypot(unit.flicker)
-        .hypot(of_walk);
+        .hypot(unit.walk * root_s);
     let sign = draw.sign();
     let size = sign * (SIZES[0] + (SIZES[1] - SIZES[0]) * draw.uniform()) * sigma;
     let at = 0.2 + 0.6 * draw.uniform();
     let half = draw.log_uniform(HALF_PLAYS) * RANGE_K;
     let lagging = followed_with_play(&temperature, half);
     for (sample, (rate, lagging)) in log.gyro.iter_mut().zip(&lagging).enumerate() {
-        rate[0] += DEG_PER_H
-            * match kind {
-                Kind::Sound => 0.0,
-                Kind::Step if share(sample) < at => 0.0,
-                Kind::Step => size,
-                Kind::Hysteresis => sign * OVER_RANGE * of_block / RANGE_K * lagging,
-            };
+        let error = match kind {
+            Kind::Sound => 0.0,
+            Kind::Step if share(sample) < at => 0.0,
+            Kind::Step => size,
+            Kind::Hysteresis => sign * OVER_RANGE * of_block / RANGE_K * lagging,
+        };
+        rate[0] += DEG_PER_H * error;
     }
     log.temperature_c = Some(temperature);
     let description = described(RATE_HZ as f64, unit.latitude_deg, "")?;
@@ -181,14 +163,11 @@ fn course(seed: u64) -> Result<Course, InstrumentError> {
     };
     let all = report.gyros[..gyros].iter().flat_map(|gyro| &gyro.effects);
     let names = |effect: &RateEffect| -> Vec<String> {
-        core::iter::once(&effect.name)
-            .chain(&effect.alternatives)
-            .cloned()
-            .collect()
+        let all = core::iter::once(&effect.name).chain(&effect.alternatives);
+        all.cloned().collect()
     };
-    let step = report.gyros[0]
-        .effects()
-        .find(|(effect, _)| effect.step.is_some());
+    let mut effects = report.gyros[0].effects();
+    let step = effects.find(|(effect, _)| effect.step.is_some());
     let step = step.filter(|_| kind == Kind::Step);
     Ok(Course {
         kind,

@@ -12,8 +12,8 @@ use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 
 use super::unit::{DEG_PER_H, EARTH_DEG_PER_H};
-use super::{described, logs};
-use crate::harness::{COVERAGE, COVERAGE_REASON, Context, Error, Figure, Row};
+use super::{REACHED, described, in_a_set, logs};
+use crate::harness::{COVERAGE, Context, Error, Figure, Row};
 
 /// Purpose of the stream of draws.
 const ERRORS: u64 = 1804;
@@ -40,11 +40,10 @@ struct Test {
 pub(super) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
     let mut figures = Vec::new();
     for (count, first, hidden) in [(6, 820_000, OF_SIX), (12, 830_000, OF_TWELVE)] {
-        let population = logs(
-            &format!("positions-{count}"),
-            [first, 300, 30],
-            move |seed| test(count, hidden.0, seed),
-        );
+        let (name, job) = (format!("positions-{count}"), move |seed| {
+            test(count, hidden.0, seed)
+        });
+        let population = logs(&name, [first, 300, 30], job);
         figures.extend(context.measure(&population, &rows(count, hidden))?);
     }
     Ok(figures)
@@ -56,45 +55,23 @@ fn rows(count: usize, (sizes, least): ([f64; 2], f64)) -> [Row<'static, Test>; 6
         let hidden = test.hidden.as_ref()?;
         Some(test.found.first().and_then(|names| names.first()) == Some(hidden))
     };
+    let [low, high] = sizes;
+    let terms = of(&format!("g terms of d = {low:.0} to {high:.0} found"));
+    let found = |test: &Test| test.hidden.as_ref().map(|_| !test.found.is_empty());
+    let alone = |test: &Test| in_a_set(test.hidden.as_ref()?, &test.found);
+    let clean = |test: &Test| test.hidden.is_none().then_some(test.found.is_empty());
+    let gyros = of("coverage of coefficients of the gyros");
+    let accelerometers = of("coverage of coefficients of the accelerometers");
+    let more = "95 %; more in noise of which none is between stops, which no stop shows";
+    let level = "the level is 1 %, and one more for a grid of levels of the noise";
     [
-        Row::each(
-            of("coverage of coefficients of the gyros"),
-            |test: &Test| test.gyros.clone(),
-        )
-        .at_least(
-            COVERAGE[0],
-            "95 %; more in noise of which none is between stops, which no stop shows",
-        ),
-        Row::each(
-            of("coverage of coefficients of the accelerometers"),
-            |test: &Test| test.accelerometers.clone(),
-        )
-        .between(COVERAGE, COVERAGE_REASON),
-        Row::share(
-            of(&format!(
-                "g terms of d = {:.0} to {:.0} found",
-                sizes[0], sizes[1]
-            )),
-            |test: &Test| test.hidden.as_ref().map(|_| !test.found.is_empty()),
-        )
-        .at_least(
-            least,
-            "what a test that does not know the scatter can reach",
-        ),
-        Row::share(of("where found, named alone or in a set"), |test: &Test| {
-            let hidden = test.hidden.as_ref()?;
-            let in_a_set = test.found.iter().any(|names| names.contains(hidden));
-            (!test.found.is_empty()).then_some(in_a_set)
-        })
-        .at_least(0.95, "sets of 95 %"),
+        Row::each(gyros, |test: &Test| test.gyros.clone()).at_least(COVERAGE[0], more),
+        Row::each(accelerometers, |test: &Test| test.accelerometers.clone()).of_coverage(),
+        Row::share(terms, found).at_least(least, REACHED),
+        Row::share(of("where found, named alone or in a set"), alone)
+            .at_least(0.95, "sets of 95 %"),
         Row::share(of("the same, the first name"), first),
-        Row::share(of("clean tests without a finding"), |test: &Test| {
-            test.hidden.is_none().then_some(test.found.is_empty())
-        })
-        .at_least(
-            0.98,
-            "the level is 1 %, and one more for a grid of levels of the noise",
-        ),
+        Row::share(of("clean tests without a finding"), clean).at_least(0.98, level),
     ]
 }
 
@@ -134,27 +111,21 @@ fn test(count: usize, sizes: [f64; 2], seed: u64) -> Result<Test, InstrumentErro
         |truth: f64, estimate: f64, sigma: f64| (estimate - truth).abs() <= NORMAL_97_5 * sigma;
     let of_gyros = report.gyros.iter().enumerate().flat_map(|(gyro, law)| {
         let unit = &unit;
-        law.extended
-            .coefficients
-            .iter()
-            .filter_map(move |coefficient| {
-                let mut terms = Term::NOMINAL.into_iter().chain(Term::catalogue(gyro));
-                let term = terms.find(|term| term.id(gyro) == coefficient.name)?;
-                let truth = of_gyro(unit, gyro, term) / DEG_PER_H;
-                Some(contains(truth, coefficient.estimate, coefficient.sigma))
-            })
+        law.extended.coefficients.iter().filter_map(move |one| {
+            let mut terms = Term::NOMINAL.into_iter().chain(Term::catalogue(gyro));
+            let term = terms.find(|term| term.id(gyro) == one.name)?;
+            let truth = of_gyro(unit, gyro, term) / DEG_PER_H;
+            Some(contains(truth, one.estimate, one.sigma))
+        })
     });
     let truths = of_accelerometers(&unit);
     let of_accelerometers = prepared.accel_errors.iter().flat_map(|errors| {
         let all = errors.coefficients.iter().zip(&truths);
-        let all = all.filter(|(coefficient, _)| coefficient.determined);
-        all.map(|(coefficient, truth)| contains(*truth, coefficient.estimate, coefficient.sigma))
+        let all = all.filter(|(one, _)| one.determined);
+        all.map(|(one, truth)| contains(*truth, one.estimate, one.sigma))
     });
-
-    let found = report
-        .findings
-        .iter()
-        .map(|finding| finding.with_alternatives().map(str::to_owned).collect());
+    let found = report.findings.iter();
+    let found = found.map(|one| one.with_alternatives().map(str::to_owned).collect());
     Ok(Test {
         hidden: hidden.map(|(gyro, axis)| format!("gyro_{}.g_{}", AXES[gyro], AXES[axis])),
         found: found.collect(),
@@ -199,10 +170,6 @@ fn of_accelerometers(unit: &UnitErrors) -> Vec<f64> {
     let scales = (0..3).map(|axis| matrix[(axis, axis)] - 1.0);
     let across = [(0, 1), (0, 2), (1, 2)];
     let misalignments = across.map(|(axis, other)| matrix[(axis, other)] / matrix[(axis, axis)]);
-    unit.accel_bias
-        .iter()
-        .copied()
-        .chain(scales)
-        .chain(misalignments)
-        .collect()
+    let biases = unit.accel_bias.iter().copied();
+    biases.chain(scales).chain(misalignments).collect()
 }

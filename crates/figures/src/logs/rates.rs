@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use super::unit::{ACCEL_NOISE_G, DEG_PER_H, EARTH_DEG_PER_H, LEVEL_RAD, Unit};
 use super::{OVER_PROJECTION, OVER_PROJECTION_REASON, described, logs};
-use crate::harness::{COVERAGE, COVERAGE_REASON, Context, Error, Figure, Row};
+use crate::harness::{Context, Error, Figure, Row};
 
 /// Purpose of the stream of draws.
 const ERRORS: u64 = 1805;
@@ -48,35 +48,26 @@ pub(super) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
         true => LONGEST_SMALL_S,
         false => LONGEST_S,
     };
-    let statics = logs("rates-static", [860_000, 500, 12], move |seed| {
-        static_log(seed, longest_s)
-    });
+    let job = move |seed| static_log(seed, longest_s);
+    let statics = logs("rates-static", [860_000, 500, 12], job);
     let mut figures = context.measure(&statics, &of_static())?;
     let two = logs("rates-two", [870_000, 500, 20], two_positions);
     figures.extend(context.measure(&two, &of_two_positions())?);
     let table = logs("rates-table", [880_000, 300, 8], table_test);
     let name = "turntable, 6 attitudes: coverage of scales, misalignments, biases, g terms";
-    let row = Row::each(name, |hits: &Vec<bool>| hits.clone()).between(COVERAGE, COVERAGE_REASON);
+    let row = Row::each(name, |hits: &Vec<bool>| hits.clone()).of_coverage();
     figures.extend(context.measure(&table, &[row])?);
     Ok(figures)
 }
 
 fn of_static() -> [Row<'static, Static>; 3] {
+    let biases = "static logs of 100 Hz, biases to 5 deg/s: coverage of the biases";
+    let vertical = "the same: coverage of the vertical rate, Earth rate and bias";
+    let without = "the same: logs without a false effect in time";
     [
-        Row::each(
-            "static logs of 100 Hz, biases to 5 deg/s: coverage of the biases",
-            |log: &Static| log.biases,
-        )
-        .between(COVERAGE, COVERAGE_REASON),
-        Row::share(
-            "the same: coverage of the vertical rate, Earth rate and bias",
-            |log: &Static| Some(log.vertical),
-        )
-        .between(COVERAGE, COVERAGE_REASON),
-        Row::share(
-            "the same: logs without a false effect in time",
-            |log: &Static| Some(!log.effect),
-        ),
+        Row::each(biases, |log: &Static| log.biases).of_coverage(),
+        Row::share(vertical, |log: &Static| Some(log.vertical)).of_coverage(),
+        Row::share(without, |log: &Static| Some(!log.effect)),
     ]
 }
 
@@ -107,29 +98,19 @@ fn static_log(seed: u64, longest_s: f64) -> Result<Static, InstrumentError> {
 }
 
 fn of_two_positions() -> [Row<'static, TwoPositions>; 3] {
-    let beside = |part: usize| {
-        move |test: &TwoPositions| Some([test.evaluated[part], test.projection[part]])
+    let beside = |what: &str, part: usize| {
+        let name =
+            format!("two-position tests, vertical component: {what} over that of projection");
+        let both = move |test: &TwoPositions| Some([test.evaluated[part], test.projection[part]]);
+        Row::rms_ratio(name, both).at_most(OVER_PROJECTION, OVER_PROJECTION_REASON)
     };
-    [
-        Row::share(
-            "two-position tests: coverage of the bias along the turned axis",
-            |test: &TwoPositions| {
-                let [error, sigma] = test.evaluated;
-                Some(error.abs() <= NORMAL_97_5 * sigma)
-            },
-        )
-        .between(COVERAGE, COVERAGE_REASON),
-        Row::rms_ratio(
-            "two-position tests, vertical component: rms error over that of projection",
-            beside(0),
-        )
-        .at_most(OVER_PROJECTION, OVER_PROJECTION_REASON),
-        Row::rms_ratio(
-            "two-position tests, vertical component: sigma over that of projection",
-            beside(1),
-        )
-        .at_most(OVER_PROJECTION, OVER_PROJECTION_REASON),
-    ]
+    let covered = |test: &TwoPositions| {
+        let [error, sigma] = test.evaluated;
+        Some(error.abs() <= NORMAL_97_5 * sigma)
+    };
+    let name = "two-position tests: coverage of the bias along the turned axis";
+    let coverage = Row::share(name, covered).of_coverage();
+    [coverage, beside("rms error", 0), beside("sigma", 1)]
 }
 
 /// A navigation-grade unit for half an hour up and half an hour down.
@@ -190,9 +171,8 @@ fn table_test(seed: u64) -> Result<Vec<bool>, InstrumentError> {
     for (number, up) in faces.into_iter().flat_map(|axis| [axis, -axis]).enumerate() {
         let [seconds, rate_hz] = [4 * PHASE_S, 25];
         let number = 6 * seed + number as u64;
-        let mut log = unit
-            .log(up, [seconds, rate_hz], table, &mut draw, number)
-            .log;
+        let made = unit.log(up, [seconds, rate_hz], table, &mut draw, number);
+        let mut log = made.log;
         let samples = 0..log.len();
         log.table_rate = Some(samples.map(|sample| table(sample / rate_hz)).collect());
         logs.push(log);

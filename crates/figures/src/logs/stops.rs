@@ -2,7 +2,6 @@
 
 use core::ops::Range;
 
-use gyrocal_evaluation::Statistic;
 use gyrocal_instruments::{InstrumentError, Log, StopSettings, find_stops};
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_truth::units::position_test::{UnitErrors, hand_held, vector};
@@ -26,17 +25,13 @@ struct Found {
 }
 
 pub(super) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
-    let false_stops = |tests: &[Found]| {
-        let all: usize = tests.iter().map(|test| test.false_stops).sum();
-        Statistic::Value(all as f64, tests.len() as u64)
-    };
     let rows = [
         Row::each(
             format!("hand-held tests of {STOPS} stops: stops found"),
             |test: &Found| test.stops.clone(),
         )
         .at_least(0.98, "one stop of two tests and a half may be set again"),
-        Row::new("the same: false stops", false_stops)
+        Row::count("the same: false stops", |test: &Found| test.false_stops)
             .at_most(0.0, "a false stop is a wrong equation of the fit"),
     ];
     context.measure(&logs("stops", [840_000, 50, 6], test), &rows)
@@ -59,9 +54,8 @@ fn test(seed: u64) -> Result<Found, InstrumentError> {
     let log = Log::from_samples(1.0 / RATE_HZ, made.gyro, made.accel);
     let found = find_stops(&log, &StopSettings::default())?;
     let overlap = |one: &Range<usize>, other: &Range<usize>| {
-        one.end
-            .min(other.end)
-            .saturating_sub(one.start.max(other.start))
+        let end = one.end.min(other.end);
+        end.saturating_sub(one.start.max(other.start))
     };
     // A found stop belongs to the true one that most of it lies in.
     let belongs =
@@ -71,11 +65,9 @@ fn test(seed: u64) -> Result<Found, InstrumentError> {
         // As one, and not in pieces.
         of_it.count() == 1
     });
-    let false_stops = found
-        .iter()
-        .filter(|found| !made.stops.iter().any(|truth| belongs(found, truth)));
+    let is_false = |found: &&Range<usize>| !made.stops.iter().any(|truth| belongs(found, truth));
     Ok(Found {
         stops: stops.collect(),
-        false_stops: false_stops.count(),
+        false_stops: found.iter().filter(is_false).count(),
     })
 }

@@ -87,8 +87,7 @@ impl Unit {
         };
         let slow: [Vec<f64>; 3] =
             core::array::from_fn(|axis| slow.rates(seconds, 10 * seed + axis as u64));
-        let rate_of =
-            |second: usize| Vector3::new(slow[0][second], slow[1][second], slow[2][second]);
+        let rate_of = |second: usize| Vector3::from_fn(|axis, _| slow[axis][second]);
         let (sine, cosine) = self.latitude_deg.to_radians().sin_cos();
         let north = vector(draw).cross(&up).normalize();
         let east = north.cross(&up);

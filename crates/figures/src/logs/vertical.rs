@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use super::unit::Unit;
 use super::{OVER_PROJECTION, OVER_PROJECTION_REASON, described, logs};
-use crate::harness::{COVERAGE, COVERAGE_REASON, Context, Error, Figure, Row};
+use crate::harness::{Context, Error, Figure, Row};
 
 /// Purpose of the stream of draws.
 const ERRORS: u64 = 1803;
@@ -24,35 +24,29 @@ struct Vertical {
 }
 
 pub(super) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
-    let beside = |part: usize| move |log: &Vertical| Some([log.both[part], log.projection?[part]]);
+    let beside = |what: &str, part: usize| {
+        let name = format!("static logs, vertical rate: {what} over that of projection alone");
+        Row::rms_ratio(name, move |log: &Vertical| {
+            Some([log.both[part], log.projection?[part]])
+        })
+        .at_most(OVER_PROJECTION, OVER_PROJECTION_REASON)
+    };
     let of_paths = |logs: &[Vertical]| {
         let paths = root_mean_square(logs.iter().map(|log| log.path[1]));
         let projections = logs.iter().filter_map(|log| Some(log.projection?[1]));
         format!("{:.1}", paths / root_mean_square(projections))
     };
+    let covered = |log: &Vertical| {
+        let [error, sigma] = log.both;
+        log.projection.map(|_| error.abs() <= NORMAL_97_5 * sigma)
+    };
+    let coverage = "static logs, vertical rate by both ways: coverage of 95 % intervals";
+    let paths = "static logs: rms sigma of the motion of gravity over that of projection";
     let rows = [
-        Row::share(
-            "static logs, vertical rate by both ways: coverage of 95 % intervals",
-            |log: &Vertical| {
-                let [error, sigma] = log.both;
-                log.projection.map(|_| error.abs() <= NORMAL_97_5 * sigma)
-            },
-        )
-        .between(COVERAGE, COVERAGE_REASON),
-        Row::rms_ratio(
-            "static logs, vertical rate: rms error over that of projection alone",
-            beside(0),
-        )
-        .at_most(OVER_PROJECTION, OVER_PROJECTION_REASON),
-        Row::rms_ratio(
-            "static logs, vertical rate: sigma over that of projection alone",
-            beside(1),
-        )
-        .at_most(OVER_PROJECTION, OVER_PROJECTION_REASON),
-        Row::words(
-            "static logs: rms sigma of the motion of gravity over that of projection",
-            of_paths,
-        ),
+        Row::share(coverage, covered).of_coverage(),
+        beside("rms error", 0),
+        beside("sigma", 1),
+        Row::words(paths, of_paths),
     ];
     context.measure(&logs("vertical", [850_000, 500, 20], log), &rows)
 }

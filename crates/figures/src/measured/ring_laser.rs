@@ -34,10 +34,8 @@ pub(super) fn measure(measured: &mut Measured) -> Result<(), Error> {
     let [_, sigma, before] = along(report, &in_platform, 0);
     measured.put([("platform_east", format!("{:.0}", 100.0 * sigma / before))]);
     let causes = diagnosis.result.causes().count() as f64;
-    measured.judge(
-        "ring laser: physical causes that its diagnosis names",
-        causes,
-    );
+    let name = "ring laser: physical causes that its diagnosis names";
+    measured.judge(name, causes);
     measured.judge("import, calibrate and diagnose: run time, s", seconds);
     choices(measured, &log, &description)
 }
@@ -68,22 +66,20 @@ fn rates(measured: &mut Measured, report: &ImportReport) {
         let more = rate - earth;
         format!("| {name} | {rate:.4} | {sigma:.4} | {earth:.4} | {more:.4} |")
     };
-    let (horizontal, vertical) = (
+    let [horizontal, vertical] = [
         report.horizontal_rate_deg_per_h,
         report.vertical_rate_deg_per_h,
-    );
-    let of_earth = [
-        report.expected_horizontal_rate_deg_per_h,
-        report.expected_vertical_rate_deg_per_h,
     ];
+    let across = report.expected_horizontal_rate_deg_per_h;
+    let along = report.expected_vertical_rate_deg_per_h;
     let lines = [
-        line("horizontal", horizontal, of_earth[0]),
-        line("vertical", vertical, of_earth[1]),
+        line("horizontal", horizontal, across),
+        line("vertical", vertical, along),
     ];
     measured.put([("lines_rates", lines.join("\n"))]);
-    let more = horizontal[0] - of_earth[0];
+    let more = horizontal[0] - across;
     measured.judge("ring laser: horizontal rate less Earth's, deg/h", more);
-    let sigmas = (vertical[0] - of_earth[1]) / vertical[1];
+    let sigmas = (vertical[0] - along) / vertical[1];
     measured.judge(
         "ring laser: vertical rate less Earth's, over its sigma",
         sigmas,
@@ -131,11 +127,9 @@ fn along(report: &ImportReport, calibration: &Calibration, direction: usize) -> 
 
 fn verdict(diagnosis: &Diagnosis<'_>) -> String {
     let findings = diagnosis.result.findings.iter();
-    let names: Vec<String> = findings
-        .map(|found| format!("`{}`", found.effect))
-        .collect();
+    let names = findings.map(|found| format!("`{}`", found.effect));
     match diagnosis.result.verdict {
-        Verdict::EffectsFound => names.join(", "),
+        Verdict::EffectsFound => names.collect::<Vec<_>>().join(", "),
         Verdict::Unexplained => "correlated rows, unexplained".to_owned(),
         _ => "nothing".to_owned(),
     }

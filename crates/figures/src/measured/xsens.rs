@@ -34,25 +34,16 @@ fn laws(measured: &mut Measured, report: &MultiPositionReport) {
         for (name, law) in [("nominal", &gyro.nominal), ("extended", &gyro.extended)] {
             let (freedom, chi_square) = (law.degrees_of_freedom, law.chi_square);
             let noise = &law.noise;
-            let levels = [
-                noise.scatter_deg_per_h,
-                noise.flicker_deg_per_h,
-                noise.walk_deg_per_h,
-            ];
-            let levels = levels.map(level).join(" | ");
+            let [scatter, flicker] = [noise.scatter_deg_per_h, noise.flicker_deg_per_h].map(level);
+            let walk = level(noise.walk_deg_per_h);
             lines.push(format!(
-                "| {of}, {name} law | {freedom} | {chi_square:.1} | {levels} |"
+                "| {of}, {name} law | {freedom} | {chi_square:.1} | {scatter} | {flicker} | {walk} |"
             ));
         }
-        let [nominal, extended] = [&gyro.nominal, &gyro.extended]
-            .map(|law| law.chi_square / law.degrees_of_freedom as f64);
-        for (what, value) in [
-            (
-                "chi-square of the nominal law over its expectation",
-                nominal,
-            ),
-            ("that of the extended law", extended),
-        ] {
+        let nominal = "chi-square of the nominal law over its expectation";
+        let extended = "that of the extended law";
+        for (what, law) in [(nominal, &gyro.nominal), (extended, &gyro.extended)] {
+            let value = law.chi_square / law.degrees_of_freedom as f64;
             measured.judge(&format!("xsens {of}: {what}"), value);
         }
     }
@@ -76,10 +67,8 @@ fn findings(measured: &mut Measured, report: &MultiPositionReport) {
             true => "none".to_owned(),
             false => others.join(", "),
         };
-        let nearest = found
-            .nearest_ruled_out
-            .as_ref()
-            .map_or(String::new(), written);
+        let nearest = found.nearest_ruled_out.as_ref();
+        let nearest = nearest.map_or(String::new(), written);
         format!("| `{effect}` | {size:.0} ± {sigma:.0} | {p:.0e} | {others} | {nearest} |")
     });
     let lines: Vec<String> = lines.collect();
@@ -95,34 +84,31 @@ fn findings(measured: &mut Measured, report: &MultiPositionReport) {
     let nearest = all().flat_map(|found| &found.nearest_ruled_out);
     let nearest = nearest.map(|other| other.log_likelihood_deficit);
     let largest = all().map(|found| found.p_value).fold(0.0, f64::max);
+    let nearest = nearest.fold(f64::INFINITY, f64::min);
     let others = report.findings.len() - cross;
-    for (name, value) in [
-        ("xsens: linear cross-axis terms found", cross as f64),
-        ("xsens: other terms found", others as f64),
-        (
-            "xsens: largest p of a finding, corrected for the search",
-            largest,
-        ),
-        (
-            "xsens: rivals that cannot be ruled out, all findings",
-            rivals as f64,
-        ),
-        (
-            "xsens: nearest term that is ruled out, nats of log likelihood",
-            nearest.fold(f64::INFINITY, f64::min),
-        ),
-    ] {
-        measured.judge(name, value);
-    }
+    measured.judge("xsens: linear cross-axis terms found", cross as f64);
+    measured.judge("xsens: other terms found", others as f64);
+    measured.judge(
+        "xsens: largest p of a finding, corrected for the search",
+        largest,
+    );
+    measured.judge(
+        "xsens: rivals that cannot be ruled out, all findings",
+        rivals as f64,
+    );
+    measured.judge(
+        "xsens: nearest term that is ruled out, nats of log likelihood",
+        nearest,
+    );
 }
 
 fn gain(measured: &mut Measured, report: &MultiPositionReport) -> Result<(), Error> {
     let gain = report.cross_validation.as_ref();
     let gain = gain.ok_or("no gain of the extended law")?;
-    let [nats, sigma] = [
+    let (nats, sigma) = (
         gain.cross_validated_log_score_nats,
         gain.standard_error_nats,
-    ];
+    );
     let lines = [
         ("nominal law", gain.rms_before_deg_per_h),
         ("extended law", gain.rms_after_deg_per_h),
@@ -143,11 +129,11 @@ fn gain(measured: &mut Measured, report: &MultiPositionReport) -> Result<(), Err
     measured.judge(name, nats / sigma);
     let name = "xsens: blocks without which each cause is found again, at least";
     measured.judge(name, least as f64);
-    let ratios = gain
+    let both = gain
         .rms_after_deg_per_h
         .iter()
         .zip(gain.rms_before_deg_per_h);
-    for ((after, before), axis) in ratios.zip(AXES) {
+    for ((after, before), axis) in both.zip(AXES) {
         let what = "error at unused stops, extended over nominal law";
         measured.judge(&format!("xsens gyro_{axis}: {what}"), after / before);
     }

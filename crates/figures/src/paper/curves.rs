@@ -1,5 +1,6 @@
 //! Figures 2 to 4 and two more: estimates against time, innovations, and final estimates.
 
+use gyrocal::{FactorisedPlatformFilter, Innovation};
 use gyrocal_calibration::{Options, declared_attitude, filter_settings, run_factorised_filter};
 use gyrocal_document::{
     Band, Chart, EstimateRow, Estimates, Level, Line, LineKind, Panel, TimeAxis, Tint,
@@ -23,6 +24,8 @@ const UNSETTLED: f64 = 0.1;
 /// A picture and the stem of its files.
 type Named = (&'static str, Box<dyn Picture>);
 
+type Filter = FactorisedPlatformFilter<f64>;
+
 /// Estimates and innovations of a streaming filter over a record.
 #[derive(Default)]
 struct Track {
@@ -44,14 +47,15 @@ pub(super) fn pictures(found: &Found) -> Result<Vec<Named>, Error> {
         Track::of(&exact, &Options::streaming())?,
     ];
     let judged = [1, 2, 3].map(|way: usize| &found[&key(WAYS[way].0, PAPER_DAYS)]);
-    let mut pictures: Vec<Named> = Vec::new();
-    for (gyro, stem) in ["figure-2", "figure-3", "figure-4"].into_iter().enumerate() {
-        pictures.push((stem, Box::new(convergence(gyro, &tracks, judged[2]))));
-    }
+    let [x, y, z] = [0, 1, 2].map(|gyro| convergence(gyro, &tracks, judged[2]));
     let [_, paper, default] = tracks;
-    pictures.push(("innovations", Box::new(innovations(&exact, paper, default))));
-    pictures.push(("estimates", Box::new(estimates(judged))));
-    Ok(pictures)
+    Ok(vec![
+        ("figure-2", Box::new(x)),
+        ("figure-3", Box::new(y)),
+        ("figure-4", Box::new(z)),
+        ("innovations", Box::new(innovations(&exact, paper, default))),
+        ("estimates", Box::new(estimates(judged))),
+    ])
 }
 
 impl Track {
@@ -61,21 +65,17 @@ impl Track {
         let attitude = declared_attitude(&simulation.bench)
             .ok_or("the bench file declares no initial attitude")?;
         let mut track = Self::default();
-        run_factorised_filter(
-            record,
-            &settings,
-            &attitude,
-            &mut |row, filter, innovation| {
-                for (values, value) in track.innovation_g.iter_mut().zip(innovation.residual) {
-                    values.push(value);
-                }
-                if row % THINNED == 0 {
-                    track.time_s.push(record.time_s[row]);
-                    track.estimate.push(filter.drift().to_array());
-                    track.sigma.push(filter.drift_sigma().to_array());
-                }
-            },
-        )?;
+        let mut take = |row: usize, filter: &Filter, innovation: &Innovation<f64, 3>| {
+            for (values, value) in track.innovation_g.iter_mut().zip(innovation.residual) {
+                values.push(value);
+            }
+            if row.is_multiple_of(THINNED) {
+                track.time_s.push(record.time_s[row]);
+                track.estimate.push(filter.drift().to_array());
+                track.sigma.push(filter.drift_sigma().to_array());
+            }
+        };
+        run_factorised_filter(record, &settings, &attitude, &mut take)?;
         Ok(track)
     }
 
@@ -83,9 +83,8 @@ impl Track {
         let (name, unit) = named(index);
         let pairs = || self.estimate.iter().zip(&self.sigma);
         let edge = |sigmas: f64| -> Vec<f64> {
-            let of =
-                |(values, sigma): (&[f64; 9], &[f64; 9])| values[index] + sigmas * sigma[index];
-            pairs().map(of).collect()
+            let edges = pairs().map(|(values, sigma)| values[index] + sigmas * sigma[index]);
+            edges.collect()
         };
         let last = pairs().next_back();
         let note = last.map(|(values, sigma)| format::estimate(values[index], sigma[index]));
@@ -168,6 +167,10 @@ fn innovations(exact: &Simulation, paper: Track, default: Track) -> Chart {
     let both = paper.innovation_g.into_iter().zip(default.innovation_g);
     let panels = AXES.into_iter().zip(both).map(|(name, (before, after))| {
         let micro_g = |values: &[f64]| format::short(1e6 * rms_of_present(values).0, 2);
+        let level = |value| Level {
+            label: "95 % of the noise of the accelerometers".to_owned(),
+            value,
+        };
         Panel {
             name: name.to_owned(),
             note: format!("rms {} → {} µg", micro_g(&before), micro_g(&after)),
@@ -176,12 +179,7 @@ fn innovations(exact: &Simulation, paper: Track, default: Track) -> Chart {
                 line("paper's filter", Tint::Nominal, before),
                 line("default filter", Tint::Extended, after),
             ],
-            levels: [-half_g, half_g]
-                .map(|value| Level {
-                    label: "95 % of the noise of the accelerometers".to_owned(),
-                    value,
-                })
-                .into(),
+            levels: [-half_g, half_g].map(level).into(),
             ..Panel::default()
         }
     });

@@ -44,9 +44,8 @@ const HELD: Column = ("% of 95% intervals that hold the truth", |of| {
 const NEES: [Column; 4] = [
     ("NEES, median", |of| two_digits(median(&nees(of)))),
     ("middle 80%", |of| {
-        [0.1, 0.9]
-            .map(|share| two_digits(quantile(&nees(of), share)))
-            .join(" to ")
+        let at = |share| two_digits(quantile(&nees(of), share));
+        [0.1, 0.9].map(at).join(" to ")
     }),
     ("mean", |of| two_digits(mean(nees(of)))),
     HELD,
@@ -76,10 +75,9 @@ const SUB_STEPS: [(&str, &str); 5] = [
 ];
 
 fn in_sigmas(of: &[&CalibrationTrial]) -> Vec<f64> {
-    let each = of
-        .iter()
-        .flat_map(|trial| trial.error.iter().zip(trial.sigma));
-    each.map(|(error, sigma)| error / sigma).collect()
+    let each = |trial: &&CalibrationTrial| trial.error.into_iter().zip(trial.sigma);
+    let all = of.iter().flat_map(each);
+    all.map(|(error, sigma)| error / sigma).collect()
 }
 
 fn nees(of: &[&CalibrationTrial]) -> Vec<f64> {
@@ -88,10 +86,8 @@ fn nees(of: &[&CalibrationTrial]) -> Vec<f64> {
 
 /// Errors of the coefficients of one kind.
 fn of_kind(of: &[&CalibrationTrial], kind: usize) -> Vec<f64> {
-    let each = of
-        .iter()
-        .flat_map(|trial| trial.error.iter().skip(kind).step_by(3));
-    each.copied().collect()
+    let each = |trial: &&CalibrationTrial| trial.error.into_iter().skip(kind).step_by(3);
+    of.iter().flat_map(each).collect()
 }
 
 /// Errors in percent of the coefficients.
@@ -115,9 +111,8 @@ pub(super) fn fill(values: &mut Values, found: &[Found]) -> Result<(), Error> {
             let first = usize::from(days.len() == 1);
             let mut header = ["days", label][first..].to_vec();
             header.extend(columns.iter().map(|(heading, _)| *heading));
-            let each = days
-                .iter()
-                .flat_map(|days| filters.iter().map(move |of| (*days, *of)));
+            let of_days = |days| filters.iter().map(move |of| (days, *of));
+            let each = days.iter().copied().flat_map(of_days);
             let rows = each.map(|(days, (key, name))| {
                 let trials = trials(key, days);
                 let labels = [days.to_string(), name.to_owned()];
@@ -126,29 +121,12 @@ pub(super) fn fill(values: &mut Values, found: &[Found]) -> Result<(), Error> {
             });
             values.put(place, table(&header, rows));
         };
-    let paper = &[PAPER_DAYS];
-    put(
-        "table_fit",
-        "filter and data",
-        &[NIS, IN_SIGMAS, HELD],
-        &WAYS,
-        paper,
-    );
+    let (paper, both) = (&[PAPER_DAYS], &[1, PAPER_DAYS]);
+    let fit = &[NIS, IN_SIGMAS, HELD];
     let label = "integration of a sample's interval";
-    put(
-        "table_sub_steps",
-        label,
-        &[NIS, IN_SIGMAS],
-        &SUB_STEPS,
-        paper,
-    );
-    put(
-        "table_nees",
-        "estimator",
-        &NEES,
-        &COORDINATES,
-        &[1, PAPER_DAYS],
-    );
+    put("table_fit", "filter and data", fit, &WAYS, paper);
+    put("table_sub_steps", label, &fit[..2], &SUB_STEPS, paper);
+    put("table_nees", "estimator", &NEES, &COORDINATES, both);
     put(
         "table_printed",
         "Earth rate",
@@ -170,14 +148,10 @@ pub(super) fn fill(values: &mut Values, found: &[Found]) -> Result<(), Error> {
 /// Table 1, and further constants of the bench.
 fn describe(values: &mut Values) {
     let scenario = scenario(SHOWN_SEED, PAPER_DAYS);
-    let of = scenario.coefficients;
-    let of = [
-        of.bias_deg_per_h,
-        of.g_deg_per_h_per_g,
-        of.gg_deg_per_h_per_g2,
-    ];
+    let of = scenario.coefficients.named();
     let gyro = |axis: usize| {
-        let coefficients = of.iter().map(|of| fixed(of[axis], 2));
+        let own = of[3 * axis..3 * axis + 3].iter();
+        let coefficients = own.map(|(_, value, _)| fixed(*value, 2));
         core::iter::once(AXES[axis].to_owned())
             .chain(coefficients)
             .collect()
@@ -187,6 +161,8 @@ fn describe(values: &mut Values) {
     let (sine, cosine) = scenario.latitude_deg.to_radians().sin_cos();
     let excess = EARTH_RATE_RAD_PER_S.to_degrees() * 3600.0 * (cosine - sine);
     let turn_rad = EARTH_RATE_RAD_PER_S * scenario.interval_s;
+    let [angle_sigma_deg, ..] = scenario.initial_angles_sigma_deg;
+    let [prior_sigma_deg_per_h, ..] = scenario.prior.bias_sigma_deg_per_h;
     for (place, text) in [
         ("table_1", table(&header, (0..3).map(gyro))),
         ("latitude", fixed(scenario.latitude_deg, 1)),
@@ -194,14 +170,8 @@ fn describe(values: &mut Values) {
         ("days", PAPER_DAYS.to_string()),
         ("accel_noise", format!("{:e}", scenario.accel_noise_g)),
         ("gyro_noise", fixed(scenario.gyro_noise_deg_per_h, 3)),
-        (
-            "angle_sigma",
-            fixed(scenario.initial_angles_sigma_deg[0], 2),
-        ),
-        (
-            "prior_sigma",
-            fixed(scenario.prior.bias_sigma_deg_per_h[0], 0),
-        ),
+        ("angle_sigma", fixed(angle_sigma_deg, 2)),
+        ("prior_sigma", fixed(prior_sigma_deg_per_h, 0)),
         ("runs", SEEDS.to_string()),
         ("nees_consistent", fixed(MEDIAN_OF_CONSISTENT, 1)),
         ("seeds", format!("{SHOWN_SEED} to {SEEDS}")),
@@ -234,24 +204,19 @@ fn of_errors(values: &mut Values, ways: &[Trials<'_>; 4]) {
         if printed {
             header.insert(2, "the paper, as printed");
         }
-        let rows = truth
-            .iter()
-            .zip(0..)
-            .map(|((name, truth_of, unit), i): (_, usize)| {
-                let value = format!("{} {}", fixed(*truth_of, 2), unit.replace("^2", "²"));
-                let printed = printed.then(|| 100.0 * (PRINTED[i] - *truth_of) / *truth_of);
-                let errors = columns.iter().map(|column| column[i]);
-                let errors = printed.into_iter().chain(errors);
-                let labels = [format!("`{name}`"), value];
-                let cells = errors.map(|error| fixed(error, 2));
-                labels.into_iter().chain(cells).collect()
-            });
+        let rows = truth.iter().enumerate().map(|(i, (name, truth, unit))| {
+            let value = format!("{} {}", fixed(*truth, 2), unit.replace("^2", "²"));
+            let printed = printed.then(|| 100.0 * (PRINTED[i] - truth) / truth);
+            let columns = columns.iter().map(|column| column[i]);
+            let errors = printed.into_iter().chain(columns);
+            let labels = [format!("`{name}`"), value];
+            let cells = errors.map(|error| fixed(error, 2));
+            labels.into_iter().chain(cells).collect()
+        });
         values.put(place, table(&header, rows));
     }
     for ((key, _), errors) in WAYS.iter().zip(&one) {
-        let largest = errors
-            .iter()
-            .fold(0.0_f64, |most, error| most.max(error.abs()));
+        let largest = errors.map(f64::abs).into_iter().fold(0.0, f64::max);
         values.put(format!("largest_percent_{key}"), fixed(largest, 1));
     }
     let shown = ways[0][0];
@@ -271,12 +236,9 @@ fn without_noise(values: &mut Values) -> Result<(), Error> {
     };
     let exact = simulate(&quiet)?.record;
     let rule = euler_rule(&quiet)?.record;
-    let apart_g: Vec<f64> = exact
-        .accel_g
-        .iter()
-        .zip(&rule.accel_g)
-        .map(|(a, b)| (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt())
-        .collect();
+    let both = exact.accel_g.iter().zip(&rule.accel_g);
+    let apart = both.map(|(a, b)| (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt());
+    let apart_g: Vec<f64> = apart.collect();
     let rows = [
         ("one step", 1),
         ("one hour", 60),
@@ -284,14 +246,9 @@ fn without_noise(values: &mut Values) -> Result<(), Error> {
         ("three days", 4320),
     ];
     let rows = rows.into_iter().map(|(name, rows)| {
-        let largest = apart_g[..=rows]
-            .iter()
-            .fold(0.0_f64, |most, d| most.max(*d));
-        vec![
-            name.to_owned(),
-            format!("{largest:.1e}"),
-            two_digits(largest / noise_g),
-        ]
+        let largest = apart_g[..=rows].iter().copied().fold(0.0, f64::max);
+        let in_sigmas = two_digits(largest / noise_g);
+        vec![name.to_owned(), format!("{largest:.1e}"), in_sigmas]
     });
     let header = [
         "after",

@@ -25,6 +25,7 @@ type Simulator = fn(&Scenario) -> Result<Simulation, gyrocal_truth::Error>;
 /// Name of a filter in this program, and its options.
 type Filter = (&'static str, fn() -> Options);
 
+const PAPER: fn() -> Options = Options::paper_baseline;
 const EVERY: Filter = ("every", Options::streaming);
 const BATCH: Filter = ("batch", Options::default);
 const SINGLE: Filter = ("single", || streaming(Integration::RK4, Recentring::Never));
@@ -39,16 +40,12 @@ const PRINTED_FILTER: &str = "printed_filter";
 type Bench = (Simulator, u32, &'static [Filter]);
 
 const BENCHES: [Bench; 4] = [
-    (
-        euler_rule,
-        PAPER_DAYS,
-        &[("own_rule", Options::paper_baseline)],
-    ),
+    (euler_rule, PAPER_DAYS, &[("own_rule", PAPER)]),
     (
         simulate,
         PAPER_DAYS,
         &[
-            ("paper", Options::paper_baseline),
+            ("paper", PAPER),
             EVERY,
             BATCH,
             SINGLE,
@@ -61,11 +58,7 @@ const BENCHES: [Bench; 4] = [
         ],
     ),
     (simulate, 1, &[SINGLE, BEYOND, EVERY, BATCH]),
-    (
-        with_printed_rate,
-        PAPER_DAYS,
-        &[("printed_both", Options::streaming)],
-    ),
+    (with_printed_rate, PAPER_DAYS, &[("printed_both", EVERY.1)]),
 ];
 
 /// The paper's combination, the same filter on exact data, and the corrected filters.
@@ -178,17 +171,15 @@ pub(super) fn rows() -> Vec<Row<'static, Found>> {
         ("single", "exact data, RK4, Euler angles in one chart"),
         ("printed_both", "Earth rate, data and filter as printed"),
         (
-            "printed_filter",
+            PRINTED_FILTER,
             "Earth rate, data with latitude, filter as printed",
         ),
     ];
     let others = others.into_iter().zip([NEARLY_FITS, FITS, DOES_NOT_FIT]);
     let of_fit = ways.chain(others).map(|((name, what), (target, reason))| {
         let key = key(name, PAPER_DAYS);
-        Row::median(format!("{what}: mean NIS, median"), move |found: &Found| {
-            Some(nis(&found[&key]))
-        })
-        .with_target(target, reason)
+        let nis = move |found: &Found| Some(nis(&found[&key]));
+        Row::median(format!("{what}: mean NIS, median"), nis).with_target(target, reason)
     });
     let of_nees = COORDINATES.into_iter().map(|(name, what)| {
         let key = key(name, 1);

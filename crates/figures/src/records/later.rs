@@ -81,51 +81,40 @@ fn rows() -> Vec<Row<'static, Second>> {
     // in them, and then chance decides which model predicts a day better.
     let better = |what: &str, among: fn(&Second) -> bool| {
         let of = move |one: &Second| among(one).then(|| one.predicted_better());
-        Row::share(name(&format!("drift predicted better{what}")), of)
+        Row::share(name(&format!("drift predicted better{what}")), of).at_least(0.95, REASON)
     };
     let by_kind = |kind: &str, is_of_outputs: bool| {
-        let name = name(&format!(
-            "drift predicted better, and by the true cause: {kind}"
-        ));
-        Row::words(name, move |all: &[Second]| {
-            let these = || {
-                all.iter()
-                    .filter(|one| one.enters_outputs() == is_of_outputs)
-            };
-            let ours = Proportion::of(these().map(Second::predicted_better));
-            let told = Proportion::of(these().map(Second::within_reach));
-            let (share, told) = (ours.share(), told.share());
-            format!("{share:.3}, {told:.3} of {}", ours.trials)
+        let what = format!("drift predicted better, and by the true cause: {kind}");
+        Row::words(name(&what), move |all: &[Second]| {
+            let all = all.iter();
+            let these = all.filter(|one| one.enters_outputs() == is_of_outputs);
+            let ours = Proportion::of(these.clone().map(Second::predicted_better));
+            let told = Proportion::of(these.map(Second::within_reach)).share();
+            format!("{:.3}, {told:.3} of {}", ours.share(), ours.trials)
         })
     };
+    let gains = |one: &Second| Some(one.gain_nats.is_some_and(|nats| nats > 0.0));
+    let angles = |all: &[Second]| {
+        let angles = || all.iter().filter_map(|one| one.after_a_day_arcmin);
+        let of = |which: usize| angles().map(|own| own[which]).collect::<Vec<f64>>();
+        [0, 1, 2]
+            .map(|which| format!("{:.2}", median(&of(which))))
+            .join(", ")
+    };
+    let told = name("median error after a day, nominal, extended, expected, arcmin");
     vec![
         better(
             ", of those that the true cause predicts better",
             Second::within_reach,
-        )
-        .at_least(0.95, REASON),
+        ),
         better(
             " where the nominal error is beyond noise",
             Second::beyond_noise,
-        )
-        .at_least(0.95, REASON),
+        ),
         by_kind("errors of gyros, site", false),
         by_kind("of accelerometers", true),
-        Row::share(name("higher log score"), |one: &Second| {
-            Some(one.gain_nats.is_some_and(|nats| nats > 0.0))
-        })
-        .at_least(0.95, REASON),
-        Row::words(
-            name("median error after a day, nominal, extended, expected, arcmin"),
-            |all: &[Second]| {
-                let angles = || all.iter().filter_map(|one| one.after_a_day_arcmin);
-                let of = |which: usize| {
-                    let angles: Vec<f64> = angles().map(|angles| angles[which]).collect();
-                    format!("{:.2}", median(&angles))
-                };
-                [0, 1, 2].map(of).join(", ")
-            },
-        ),
+        Row::share(name("higher log score"), gains).at_least(0.95, REASON),
+        Row::words(told, angles),
     ]
 }
 

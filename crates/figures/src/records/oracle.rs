@@ -1,8 +1,8 @@
 //! The set of an oracle for records of one platform: it knows the noise, the hidden cause and its size.
 
-use gyrocal_calibration::{FittedPlatform, NoiseModel, Options, Run};
+use gyrocal_calibration::{FittedPlatform, NoiseModel, Options};
 use gyrocal_evaluation::{
-    EvaluationError, InjectedEffect, ProjectedScores, SignatureColumns, same_or_equivalent,
+    EvaluationError, InjectedEffect, ProjectedScores, SignatureColumns, run_of, same_or_equivalent,
     testable_effects,
 };
 use gyrocal_hypothesis::CONFIDENCE_SET_DEVIANCE;
@@ -23,12 +23,8 @@ pub(super) fn set_size(
     injected: &InjectedEffect,
 ) -> Result<Option<f64>, EvaluationError> {
     let noise = NoiseModel::default();
-    let fits: Vec<FittedPlatform<'_>> = simulations
-        .iter()
-        .map(|Simulation { record, bench, .. }| {
-            FittedPlatform::nominal(&Run { record, bench }, &Options::default(), &noise)
-        })
-        .collect::<Result<_, _>>()?;
+    let fit = |one| FittedPlatform::nominal(&run_of(one), &Options::default(), &noise);
+    let fits: Vec<FittedPlatform<'_>> = simulations.iter().map(fit).collect::<Result<_, _>>()?;
     let benches: Vec<_> = simulations.iter().map(|one| &one.bench).collect();
     let scores = ProjectedScores::new(&FittedPlatform::joined(&fits, &benches)?, &[])?;
     let Some(first) = simulations.first() else {
@@ -47,9 +43,8 @@ pub(super) fn set_size(
     let mut size = 1.0;
     let mut counted = vec![injected.effect.id];
     for other in testable_effects(scenario) {
-        let is_counted = counted
-            .iter()
-            .any(|known| same_or_equivalent(known, other.id));
+        let mut known = counted.iter();
+        let is_counted = known.any(|known| same_or_equivalent(known, other.id));
         if is_counted || !other.has_term() || other.shape().is_some() {
             continue;
         }
@@ -59,10 +54,9 @@ pub(super) fn set_size(
         counted.push(other.id);
         let cosine = scores.cosine(&own, &injected.sizes, &signature);
         let lacks = strength * (1.0 - cosine * cosine).max(0.0).sqrt();
-        size += if lacks > 0.0 {
-            normal_probability((CONFIDENCE_SET_DEVIANCE - lacks * lacks) / (2.0 * lacks))
-        } else {
-            1.0
+        size += match lacks > 0.0 {
+            true => normal_probability((CONFIDENCE_SET_DEVIANCE - lacks * lacks) / (2.0 * lacks)),
+            false => 1.0,
         };
     }
     Ok(Some(size))

@@ -49,10 +49,8 @@ pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
     ];
     let name = "planned run: mean size of named sets of two or more before it";
     let mut sizes = vec![Row::mean(name, |of: &Sets| of.now)];
-    for (which, length) in ["a twelfth of the record", "as long as the record"]
-        .into_iter()
-        .enumerate()
-    {
+    let lengths = ["a twelfth of the record", "as long as the record"];
+    for (which, length) in lengths.into_iter().enumerate() {
         let name = format!("planned run {length}: mean size of the set");
         let after = move |of: &Sets| of.now.map(|_| of.after[which]);
         let ratio = Row::ratio(format!("{name} over the predicted"), move |of| {
@@ -102,9 +100,8 @@ fn sigmas(seed: u64) -> Result<Vec<f64>, Error> {
     let second = made(&scenario, best)?;
     let joint = calibrate_runs(&[run_of(&first), run_of(&second)], &options, |_| ())?;
     let both = best.outlook.coefficients.iter().zip(joint.coefficients());
-    Ok(both
-        .map(|(predicted, found)| found.sigma / predicted.sigma)
-        .collect())
+    let ratios = both.map(|(predicted, found)| found.sigma / predicted.sigma);
+    Ok(ratios.collect())
 }
 
 fn sets(seed: u64) -> Result<Sets, Error> {
@@ -130,9 +127,9 @@ fn sets(seed: u64) -> Result<Sets, Error> {
         sets.now = now.filter(|size| *size > 1.0);
         let best = planned.proposals.first().ok_or("no proposal")?;
         let predicted = best.outlook.sets.first().ok_or("no set")?.mean_size;
-        let (one, second, calibration) =
-            (run_of(&first), made(&scenario, best)?, Options::default());
-        let compared = compare(fitted, &one, &run_of(&second), None, &named, &calibration)?;
+        let (second, calibration) = (made(&scenario, best)?, Options::default());
+        let runs = [run_of(&first), run_of(&second)];
+        let compared = compare(fitted, &runs[0], &runs[1], None, &named, &calibration)?;
         let left = compared.sets.first().ok_or("no set")?;
         let left = left.iter().filter(|member| member.stays).count();
         *after = [predicted, left as f64];

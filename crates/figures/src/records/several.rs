@@ -91,10 +91,8 @@ pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
     }
     let clean = Population::new("four clean records", [870_000, 2000, 2], SOURCES, is_alarm);
     let name = "four clean records: false alarms, upper bound of 95 %";
-    let alarms = Row::bound(name, |alarm: &bool| *alarm).at_most(
-        0.02,
-        "the level is 1 %: of 2000 twenty are due, and 27 within the bound",
-    );
+    let level = "the level is 1 %: of 2000 twenty are due, and 27 within the bound";
+    let alarms = Row::bound(name, |alarm: &bool| *alarm).at_most(0.02, level);
     figures.extend(context.measure(&clean, &[alarms])?);
     Ok(figures)
 }
@@ -105,31 +103,27 @@ fn rows(cell: &Hidden) -> Vec<Row<'_, Named>> {
     let over_oracle = |what: &str, in_time: bool| {
         Row::ratio(name(what), move |one: &Named| {
             let is_of_these = one.together && one.in_time == in_time;
-            let own = (one.set - one.shapes) as f64;
-            one.oracle
-                .filter(|_| is_of_these)
-                .map(|oracle| [own, oracle])
+            let oracle = one.oracle.filter(|_| is_of_these)?;
+            Some([(one.set - one.shapes) as f64, oracle])
         })
     };
     let what = "mean size of the set over an oracle's, members without onset or time constant";
     let number = |what: &str, of: fn(&Named) -> Option<usize>| {
         Row::mean(name(what), move |one| Some(of(one)? as f64))
     };
+    let beside = "mean number of members with onset or time constant beside these";
+    let (set, alone) = (
+        "mean size of the set",
+        "mean size of the set of the first record alone",
+    );
     vec![
         Row::share(name("found"), |one: &Named| Some(one.together))
             .at_least(cell.found, cell.reason),
         over_oracle(what, false).at_most(1.1, "a tenth for levels of noise that are estimated"),
         over_oracle("the same of causes in time or temperature", true),
-        number(
-            "mean number of members with onset or time constant beside these",
-            |one| one.together.then_some(one.shapes),
-        ),
-        number("mean size of the set", |one| {
-            one.together.then_some(one.set)
-        }),
-        number("mean size of the set of the first record alone", |one| {
-            one.alone
-        }),
+        number(beside, |one| one.together.then_some(one.shapes)),
+        number(set, |one| one.together.then_some(one.set)),
+        number(alone, |one| one.alone),
     ]
 }
 
@@ -159,10 +153,8 @@ fn hidden(seed: u64, records: u64, strength: f64) -> Result<Named, Error> {
             && effect.shape().is_none()
             && matches!(effect.enters, Enters::Rates(_) | Enters::Outputs(_))
     };
-    let effects: Vec<&'static Effect> = testable_effects(&scenarios[0])
-        .into_iter()
-        .filter(is_term)
-        .collect();
+    let effects = testable_effects(&scenarios[0]).into_iter();
+    let effects: Vec<&'static Effect> = effects.filter(is_term).collect();
     let (mut injected, own) = loop {
         let effect = *draw.one_of(&effects);
         let sizes = effect.sizes();
@@ -191,19 +183,15 @@ fn hidden(seed: u64, records: u64, strength: f64) -> Result<Named, Error> {
     let together = together(&simulations)?;
     let set = together.causes().find(|cause| set_holds(cause, effect.id));
     let members = || set.into_iter().flat_map(Finding::set);
-    let shapes =
-        members().filter(|id| effect_of(id).is_some_and(|member| member.shape().is_some()));
-    let first = diagnosed(&simulations[0])?;
+    let has_shape = |id: &&str| effect_of(id).is_some_and(|member| member.shape().is_some());
+    let first = diagnosed(&simulations[0])?.result;
+    let alone = first.causes().next();
     Ok(Named {
         together: set.is_some(),
         set: members().count(),
-        alone: first
-            .result
-            .causes()
-            .next()
-            .map(|cause| cause.set().count()),
+        alone: alone.map(|cause| cause.set().count()),
         in_time: effect.kind != EffectKind::Constant,
-        shapes: shapes.count(),
+        shapes: members().filter(has_shape).count(),
         oracle: oracle::set_size(&scenarios[0], &simulations, &injected)?,
     })
 }

@@ -7,6 +7,7 @@ use std::time::Instant;
 use gyrocal_testkit::workspace;
 
 use crate::harness::{Error, Figure};
+use crate::kernel::instructions::output;
 use crate::page;
 
 /// Longest time that the commands may take, build included, min.
@@ -35,23 +36,15 @@ pub(super) fn figure() -> Result<Figure, Error> {
 
 fn run(script: &str, folder: &Path) -> Result<(), Error> {
     let here = format!("url.{}.insteadOf", workspace().display());
-    let output = Command::new("bash")
-        .args(["-euo", "pipefail", "-c", script])
-        .current_dir(folder)
-        .env_remove("CARGO_TARGET_DIR")
-        .env_remove("RUSTFLAGS")
-        .envs([
-            ("GIT_CONFIG_COUNT", "1"),
-            ("GIT_CONFIG_KEY_0", here.as_str()),
-            ("GIT_CONFIG_VALUE_0", REPOSITORY),
-        ])
-        .output()?;
-    if output.status.success() {
-        Ok(())
-    } else {
-        let said = String::from_utf8_lossy(&output.stderr);
-        Err(format!("docs/first-ten-minutes.md: a command failed: {said}").into())
-    }
+    let mut bash = Command::new("bash");
+    bash.args(["-euo", "pipefail", "-c", script])
+        .current_dir(folder);
+    bash.env_remove("CARGO_TARGET_DIR").env_remove("RUSTFLAGS");
+    let git = [("COUNT", "1"), ("KEY_0", &here), ("VALUE_0", REPOSITORY)];
+    bash.envs(git.map(|(key, value)| (format!("GIT_CONFIG_{key}"), value)));
+    let ran = output(&mut bash);
+    ran.map_err(|error| format!("docs/first-ten-minutes.md: {error}"))?;
+    Ok(())
 }
 
 /// The commands of a page, one a line, as a reader would type them.
@@ -61,14 +54,12 @@ fn script(page: &str) -> String {
     for block in page.split(FENCE).skip(1).step_by(2) {
         let (kind, block) = block.split_once('\n').unwrap_or_default();
         let block = block.replace("\\\n", " ");
-        match kind {
-            "sh" => script.push_str(&block),
-            "console" => {
-                let commands = block.lines().filter_map(|line| line.strip_prefix("$ "));
-                script.extend(commands.flat_map(|command| [command, "\n"]));
-            }
-            _ => {}
-        }
+        let typed = |line| match kind {
+            "sh" => Some(line),
+            _ => str::strip_prefix(line, "$ ").filter(|_| kind == "console"),
+        };
+        let commands = block.lines().filter_map(typed);
+        script.extend(commands.flat_map(|command| [command, "\n"]));
     }
     script
 }

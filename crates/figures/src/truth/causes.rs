@@ -14,11 +14,11 @@ use gyrocal_evaluation::{
 use gyrocal_hypothesis::{FittedModel, HypothesisSet, ModelExtension};
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_statistics::{NORMAL_97_5, median};
-use gyrocal_truth::{Simulation, Temperature, simulate};
+use gyrocal_truth::{Simulation, simulate};
 use serde::{Deserialize, Serialize};
 
 use super::drawn::{self, noisy};
-use super::judged::{self, coefficient_rows, coefficients, may_walk};
+use super::judged::{self, Stated, coefficient_rows, coefficients, may_walk};
 use crate::harness::{Context, DIAGNOSIS, Error, Figure, Population, Row, Sources, of};
 
 use Causes::{All, Of, Slow};
@@ -205,10 +205,8 @@ impl Cell {
         let first = self.named("in those of the first member");
         let widths = self.named("median width of these over the true model's");
         let width = |one: &Caused| (!one.widths.is_empty()).then(|| median(&one.widths));
-        let mut rows = vec![
-            Row::share(quick, Caused::quick_alone).at_least(least, reason),
-            self.warm_ups(),
-        ];
+        let quick = Row::share(quick, Caused::quick_alone).at_least(least, reason);
+        let mut rows = vec![quick, self.warm_ups()];
         rows.extend(coefficient_rows(&covered, |one: &Caused| &one.over_set));
         rows.push(Row::each(first, |one: &Caused| one.first.clone()));
         let reason = "what names and noise that are not known may cost";
@@ -235,9 +233,7 @@ fn record(cell: &Cell, seed: u64) -> Result<Caused, Error> {
     let (mut scenario, noise) = noisy(seed)?;
     // Without a log there is no such cause.
     if cell.of == Of(Regressor) {
-        scenario
-            .temperature
-            .get_or_insert_with(Temperature::default);
+        scenario.temperature.get_or_insert_default();
     }
     let mut effects = testable_effects(&scenario);
     effects.retain(|effect| match cell.of {
@@ -256,7 +252,7 @@ fn record(cell: &Cell, seed: u64) -> Result<Caused, Error> {
     let holds_it = |set: &Vec<&str>| set.iter().any(|effect| same_or_equivalent(effect, id));
     let stated = coefficients(&found.result, &simulation);
     let sigmas = true_sigmas(&found, &simulation, &cause)?;
-    let widths = stated.iter().zip(sigmas);
+    let of_true = |(one, sigma): (&Stated, f64)| one.width / (2.0 * NORMAL_97_5 * sigma);
     Ok(Caused {
         effect: id.to_owned(),
         detected: !causes.is_empty(),
@@ -268,9 +264,7 @@ fn record(cell: &Cell, seed: u64) -> Result<Caused, Error> {
         oracle_set_size: oracle.first().map(Vec::len),
         over_set: stated.iter().map(|one| one.covered).collect(),
         first: stated.iter().map(|one| one.first).collect(),
-        widths: widths
-            .map(|(one, sigma)| one.width / (2.0 * NORMAL_97_5 * sigma))
-            .collect(),
+        widths: stated.iter().zip(sigmas).map(of_true).collect(),
     })
 }
 
@@ -302,20 +296,17 @@ mod tests {
         let page = std::fs::read_to_string(pages::path("diagnosis")).unwrap();
         for (kind, stated) in SET_COVERAGE {
             let own = |cell: &&Cell| cell.of == Of(kind) && cell.strength == 8.0;
-            let row = match CELLS.iter().find(own) {
-                Some(cell) => cell.named("coverage of the set"),
-                None => CELLS[0].named(&format!("coverage of the set, kind {kind:?}")),
-            };
+            let of_all = || CELLS[0].named(&format!("coverage of the set, kind {kind:?}"));
+            let own = CELLS.iter().find(own);
+            let row = own.map_or_else(of_all, |cell| cell.named("coverage of the set"));
             let start = format!("| {row} ");
             let row = page.lines().find(|line| line.starts_with(&start));
             let measured = row.and_then(|row| row.split('|').nth(3)?.split_whitespace().next());
             let measured: f64 = measured.expect(&start).parse().unwrap();
             // Rounded down, and never all of them; three decimals have no exact binary form.
             let rounded = ((100.0 * measured + 1e-9).floor() / 100.0).min(0.99);
-            assert!(
-                (rounded - stated).abs() < 1e-9,
-                "{start}: {measured}, stated {stated}"
-            );
+            let off = (rounded - stated).abs();
+            assert!(off < 1e-9, "{start}: {measured}, stated {stated}");
         }
     }
 }

@@ -50,15 +50,13 @@ pub(super) fn misdeclare(
         return Ok(noise);
     }
     for (axis, name) in AXES.iter().enumerate() {
-        let instruments = [
-            ("gyro", &mut noise.gyro_ratio),
-            ("accel", &mut noise.accel_ratio),
-        ];
-        for (instrument, ratios) in instruments {
-            ratios[axis] = random.log_uniform(MISDECLARED);
+        let ratios = [&mut noise.gyro_ratio[axis], &mut noise.accel_ratio[axis]];
+        for (ratio, instrument) in ratios.into_iter().zip(["gyro", "accel"]) {
+            *ratio = random.log_uniform(MISDECLARED);
             let id = format!("{instrument}_{name}.noise");
-            let hidden = Hidden::new(&id, &[("ratio", ratios[axis])])?;
-            scenario.hidden.push(hidden);
+            scenario
+                .hidden
+                .push(Hidden::new(&id, &[("ratio", *ratio)])?);
         }
     }
     Ok(noise)

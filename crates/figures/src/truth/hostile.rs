@@ -1,7 +1,7 @@
 //! Work of a diagnosis on hostile records, over that on a sound record of the same size.
 
 use gyrocal_calibration::work;
-use gyrocal_evaluation::{Statistic, diagnosed};
+use gyrocal_evaluation::diagnosed;
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_statistics::median;
 use gyrocal_truth::faults::leave_angles_out;
@@ -38,15 +38,13 @@ fn cost(kind: &str, simulation: &Simulation) -> Cost {
     }
 }
 
-/// Sound records of both sizes.
-fn sound_costs(seed: u64) -> Result<[Cost; 2], Error> {
-    let of = |rows: usize| Ok::<_, Error>(cost("sound", &sound(seed, rows)?));
-    Ok([of(ROWS)?, of(FEW_ROWS)?])
-}
-
 pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
     let name = "hostile, sound records beside";
-    let reference = Population::new(name, [3_230_000, 5, 5], SOURCES, sound_costs);
+    let sound = |seed| {
+        let of = |rows: usize| Ok::<_, Error>(cost("sound", &simulate(&plain(seed, rows))?));
+        Ok([of(ROWS)?, of(FEW_ROWS)?])
+    };
+    let reference = Population::new(name, [3_230_000, 5, 5], SOURCES, sound);
     let reference = context.records(&reference)?;
     let job = |seed| record(seed).map(|(kind, simulation)| cost(kind, &simulation));
     let population = Population::new("hostile", [3_220_000, 200, 5], SOURCES, job);
@@ -57,21 +55,17 @@ pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
         value(one) / median(&of_size.collect::<Vec<_>>())
     };
     let name = "work of `diagnose` on hostile records over a sound one of that size";
-    let largest = |all: &[Cost]| {
-        let works = all.iter().map(|one| over(one, |one| one.work as f64));
-        Statistic::Value(works.fold(0.0, f64::max), all.len() as u64)
-    };
+    let work = |one: &Cost| over(one, |one| one.work as f64);
     let time = |all: &[Cost]| {
         let largest = |of: &dyn Fn(&Cost) -> f64| all.iter().map(of).fold(0.0, f64::max);
         let slowest = largest(&|one| over(one, |one| one.seconds));
         let longest_s = largest(&|one| one.seconds);
-        let work = |one: &Cost| over(one, |one| one.work as f64);
         let kind = all.iter().max_by(|a, b| work(a).total_cmp(&work(b)));
         let kind = kind.map_or("none", |one| &one.kind);
         format!("{slowest:.1} times, {longest_s:.1} s; most work: {kind}")
     };
     let rows = [
-        Row::new(name, largest).at_most(20.0, "the budget of a search, with what comes before it"),
+        Row::largest(name, work).at_most(20.0, "the budget of a search, with what comes before it"),
         Row::words("the same in time, largest", time),
     ];
     context.measure(&population, &rows)
@@ -85,10 +79,6 @@ const ROWS: usize = 2881;
 const FEW_ROWS: usize = 145;
 
 /// A plain record of a number of rows.
-fn sound(seed: u64, rows: usize) -> Made {
-    Ok(simulate(&plain(seed, rows))?)
-}
-
 fn plain(seed: u64, rows: usize) -> Scenario {
     Scenario {
         seed,

@@ -20,27 +20,22 @@ const COEFFICIENTS_REASON: &str =
 
 /// Whether a set holds a random walk: of this gyro, or of any without one.
 pub(super) fn may_walk(finding: &Finding, gyro: Option<usize>) -> bool {
-    let mut walks = finding
-        .set()
-        .filter_map(effect_of)
-        .filter(|effect| effect.kind == EffectKind::RandomWalk);
-    walks.any(|walk| gyro.is_none() || walk.rate() == gyro)
+    let mut set = finding.set().filter_map(effect_of);
+    set.any(|of| of.kind == EffectKind::RandomWalk && (gyro.is_none() || of.rate() == gyro))
 }
 
 /// Causes without a random walk of their own gyro in the set; those that enter no gyro count without any walk in
 /// the set.
 pub(super) fn surely_not_walks(found: &Answer) -> impl Iterator<Item = &Finding> {
     let own = |cause: &Finding| effect_of(&cause.effect).and_then(Effect::rate);
-    found
-        .causes()
-        .filter(move |cause| !may_walk(cause, own(cause)))
+    let causes = found.causes();
+    causes.filter(move |cause| !may_walk(cause, own(cause)))
 }
 
 /// Whether one of the pieces of an interval holds a value.
 pub(super) fn within(pieces: &[[f64; 2]], value: f64) -> bool {
-    pieces
-        .iter()
-        .any(|[low, high]| (*low..=*high).contains(&value))
+    let mut pieces = pieces.iter();
+    pieces.any(|[low, high]| (*low..=*high).contains(&value))
 }
 
 /// A coefficient against its true value.
@@ -61,10 +56,8 @@ pub(super) fn coefficients(found: &Answer, simulation: &Simulation) -> Vec<State
     let all = best.zip(simulation.truth.coefficients.named()).enumerate();
     let stated = all.map(|(index, (best, (_, truth, _)))| {
         let first = [-NORMAL_97_5, NORMAL_97_5].map(|z| best.estimate + z * best.sigma);
-        let over_set = of
-            .over_set
-            .as_ref()
-            .map_or(first, |all| all[index].interval);
+        let over_set = of.over_set.as_ref();
+        let over_set = over_set.map_or(first, |all| all[index].interval);
         Stated {
             covered: within(&[over_set], truth),
             first: within(&[first], truth),

@@ -12,9 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use super::drawn::{self, misdeclare, plain, walk};
 use super::judged::{self, surely_not_walks, within};
-use crate::harness::{
-    COVERAGE, COVERAGE_REASON, Context, DIAGNOSIS, Error, Figure, Population, Row, Sources, of,
-};
+use crate::harness::{Context, DIAGNOSIS, Error, Figure, Population, Row, Sources, of};
 
 /// What can move the records.
 const SOURCES: Sources = of(DIAGNOSIS, &[file!(), drawn::FILE, judged::FILE]);
@@ -42,15 +40,12 @@ enum Noise {
 
 /// Populations with random walks: number of gyros, first seed, records of the small version, name of the row.
 const WALKING: [(usize, u64, u64, &str); 3] = [
-    (
-        1,
-        710_000,
-        4,
-        "random walk on one gyro: a deterministic cause named without a walk of its gyro",
-    ),
+    (1, 710_000, 4, ONE_WALK),
     (2, 720_000, 0, "random walks on two gyros: the same"),
     (3, 730_000, 6, "random walks on three gyros: the same"),
 ];
+const ONE_WALK: &str =
+    "random walk on one gyro: a deterministic cause named without a walk of its gyro";
 
 /// Reasons of the limits.
 const LEVEL_REASON: &str =
@@ -85,8 +80,7 @@ pub(crate) fn of_walks(context: &Context) -> Result<Vec<Figure>, Error> {
         let covered = format!("{cell}: coverage of the 95 % interval of a walk's size");
         let rows = [
             Row::bound(name, Noisy::is_named).at_most(0.03, WALKING_REASON),
-            Row::each(covered, |one: &Noisy| one.covered.clone())
-                .between(COVERAGE, COVERAGE_REASON),
+            Row::each(covered, |one: &Noisy| one.covered.clone()).of_coverage(),
         ];
         let walks = population(Noise::Walks(gyros), &cell, [first, 1000, small]);
         figures.extend(context.measure(&walks, &rows)?);
@@ -106,22 +100,23 @@ pub(crate) fn of_clean(context: &Context) -> Result<Vec<Figure>, Error> {
     let name =
         "clean, noise declared 0.5 to 2 times, AR(1) to 0.3, t₄: physical cause or unexplained";
     let row = Row::bound(name, |one: &Noisy| one.is_named() || one.unexplained);
-    let levels = |half: usize| {
-        move |one: &Noisy| {
-            let all = one.levels.iter().copied().enumerate();
-            let own = all.filter(move |(place, _)| place / AXES.len() == half);
-            own.map(|(_, holds)| holds).collect::<Vec<_>>()
-        }
+    let levels = |name, half: usize| {
+        let own = move |one: &Noisy| {
+            let halves = one.levels.chunks(AXES.len());
+            halves
+                .skip(half)
+                .take(1)
+                .flatten()
+                .copied()
+                .collect::<Vec<_>>()
+        };
+        Row::each(name, own).of_coverage()
     };
-    let gyros = Row::each(
-        "clean, white normal noise: coverage of the 95 % interval of a gyro's noise",
-        levels(0),
-    );
-    let accelerometers = Row::each("... of an accelerometer's noise", levels(1));
+    let gyros = "clean, white normal noise: coverage of the 95 % interval of a gyro's noise";
     let rows = [
         row.at_most(0.02, LEVEL_REASON),
-        gyros.between(COVERAGE, COVERAGE_REASON),
-        accelerometers.between(COVERAGE, COVERAGE_REASON),
+        levels(gyros, 0),
+        levels("... of an accelerometer's noise", 1),
     ];
     context.measure(&clean, &rows)
 }
@@ -187,13 +182,11 @@ fn hold_levels(found: &Answer, truth: &NoiseModel) -> Vec<bool> {
         let named = AXES.iter().zip(ratios);
         named.map(move |(axis, ratio)| (format!("{instrument}_{axis}"), ratio))
     });
-    levels
-        .filter_map(|(channel, ratio)| {
-            let own = found.noise.iter().find(|one| one.channel == channel)?;
-            let [low, high] = own.interval;
-            Some((low..=high).contains(&ratio))
-        })
-        .collect()
+    let holds = |(channel, ratio): (String, f64)| {
+        let own = found.noise.iter().find(|one| one.channel == channel)?;
+        Some(within(&[own.interval], ratio))
+    };
+    levels.filter_map(holds).collect()
 }
 
 /// Whether the interval of a walk holds its size; `None` unless it is named.

@@ -79,9 +79,8 @@ pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
     let reason = "one in twenty may be told to look elsewhere in vain";
     rows.push(Row::share(name, denied).at_most(0.05, reason));
     let name = "the same, of which there is a record of the catalogue that is as strong";
-    rows.push(Row::words(name, |all: &[Outside]| {
-        of_equal_strength(all).len().to_string()
-    }));
+    let pairs = |all: &[Outside]| of_equal_strength(all).len().to_string();
+    rows.push(Row::words(name, pairs));
     let name = "stated probability of none of these, of the share that is so, in five bins of records of equal strength";
     rows.push(Row::words(name, calibration));
     for bin in 0..BINS {
@@ -100,25 +99,27 @@ pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
 
 /// Rows of effects outside of the catalogue.
 fn rows_of(kinds: Of, which: &str) -> Vec<Row<'static, Outside>> {
-    let strong = move |one: &Outside| one.of == kinds && one.beside >= BESIDE;
-    let named = [
-        format!(
-            "outside of the catalogue, kinds {which}, 8 σ beside what is named: named alone, none of these below a half"
-        ),
-        format!("the same, kinds {which}, 8 to 200 σ of which the names may leave less"),
-        format!("the same, kinds {which}, 8 σ beside what is named: called clean"),
-        format!("the same, kinds {which}, 8 σ beside: searches cut, which state no probability"),
-    ];
-    let [alone, all, clean, cut] = named;
+    let share = |name: [&str; 2], least: f64, is: fn(&Outside) -> bool| {
+        Row::share(name.join(which), move |one: &Outside| {
+            (one.of == kinds && one.beside >= least).then(|| is(one))
+        })
+    };
+    let strong = ", 8 σ beside what is named: named alone, none of these below a half";
+    let all = ", 8 to 200 σ of which the names may leave less";
+    let clean = ", 8 σ beside what is named: called clean";
+    let cut = ", 8 σ beside: searches cut, which state no probability";
+    let same = "the same, kinds ";
     vec![
-        Row::share(alone, move |one| strong(one).then(|| one.is_named_alone()))
-            .at_most(0.1, "a wrong name without a warning is the worst answer"),
-        Row::share(all, move |one: &Outside| {
-            (one.of == kinds).then(|| one.is_named_alone())
-        }),
-        Row::share(clean, move |one| strong(one).then_some(one.is_clean)),
-        Row::share(cut, move |one| {
-            strong(one).then_some(one.none.is_none() && !one.is_clean)
+        share(
+            ["outside of the catalogue, kinds ", strong],
+            BESIDE,
+            Outside::is_named_alone,
+        )
+        .at_most(0.1, "a wrong name without a warning is the worst answer"),
+        share([same, all], 0.0, Outside::is_named_alone),
+        share([same, clean], BESIDE, |one| one.is_clean),
+        share([same, cut], BESIDE, |one| {
+            one.none.is_none() && !one.is_clean
         }),
     ]
 }
@@ -137,11 +138,9 @@ fn of_equal_strength(all: &[Outside]) -> Vec<[f64; 2]> {
     outside.sort_by(|a, b| b.0.total_cmp(&a.0));
     let mut pairs = Vec::new();
     for (strength, none) in outside {
-        let off = |of: &(f64, f64)| (of.0 / strength).ln().abs();
-        let nearest = (0..catalogue.len())
-            .filter(|one| off(&catalogue[*one]) < EQUAL.ln())
-            .min_by(|a, b| off(&catalogue[*a]).total_cmp(&off(&catalogue[*b])));
-        if let Some(nearest) = nearest {
+        let off = |of: &usize| (catalogue[*of].0 / strength).ln().abs();
+        let near = (0..catalogue.len()).filter(|one| off(one) < EQUAL.ln());
+        if let Some(nearest) = near.min_by(|a, b| off(a).total_cmp(&off(b))) {
             pairs.push([none, catalogue.swap_remove(nearest).1]);
         }
     }
@@ -151,9 +150,8 @@ fn of_equal_strength(all: &[Outside]) -> Vec<[f64; 2]> {
 /// Stated probabilities of these pairs in bins of equal count, each with 1 where it is so and 0 where not.
 fn bins(all: &[Outside]) -> Vec<Vec<[f64; 2]>> {
     let pairs = of_equal_strength(all).into_iter();
-    let mut stated: Vec<[f64; 2]> = pairs
-        .flat_map(|[outside, listed]| [[outside, 1.0], [listed, 0.0]])
-        .collect();
+    let both = pairs.flat_map(|[outside, listed]| [[outside, 1.0], [listed, 0.0]]);
+    let mut stated: Vec<[f64; 2]> = both.collect();
     stated.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let size = stated.len().div_ceil(BINS).max(1);
     stated.chunks(size).map(<[_]>::to_vec).collect()
@@ -238,9 +236,7 @@ mod tests {
         all.extend(listed);
         // 21 takes the one of 20, and for 19 none is left.
         assert_eq!(of_equal_strength(&all), [[0.7, 0.3], [0.8, 0.1]]);
-        assert_eq!(
-            calibration(&all),
-            "0.10 of 0.00, 0.30 of 0.00, 0.70 of 1.00, 0.80 of 1.00"
-        );
+        let bins = "0.10 of 0.00, 0.30 of 0.00, 0.70 of 1.00, 0.80 of 1.00";
+        assert_eq!(calibration(&all), bins);
     }
 }

@@ -13,7 +13,7 @@ use gyrocal_truth::{InitialAttitude, Scenario, Simulation, simulate};
 use serde::{Deserialize, Serialize};
 
 use super::drawn::{self, coefficients};
-use crate::harness::{Context, Error, Figure, Population, Row, Sources, of};
+use crate::harness::{Context, Error, Figure, Population, Row, Sources, in_turn, of};
 
 const SOURCES: Sources = of(
     &["crates/diagnosis", "crates/evaluation"],
@@ -35,11 +35,7 @@ const FALSE: f64 = 0.005;
 const FALSE_REASON: &str = "half of the level of the diagnosis, which the gate precedes";
 
 pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
-    let mut figures = broken(context)?;
-    figures.extend(sound(context)?);
-    figures.extend(undecided(context)?);
-    figures.extend(time(context.is_small())?);
-    Ok(figures)
+    in_turn(context, &[broken, sound, undecided, time])
 }
 
 /// What was told of one broken record.
@@ -207,7 +203,7 @@ fn timed_ms(mut job: impl FnMut()) -> f64 {
     median(&times)
 }
 
-fn time(small: bool) -> Result<Vec<Figure>, Error> {
+fn time(context: &Context) -> Result<Vec<Figure>, Error> {
     let of_gate = |simulation: &Simulation| {
         timed_ms(|| {
             std::hint::black_box(check_setup(&simulation.record, &simulation.bench));
@@ -217,10 +213,10 @@ fn time(small: bool) -> Result<Vec<Figure>, Error> {
     let rows = reversed.record.len();
     let (once, more) = (of_gate(&reversed), of_gate(&simulated(MORE * DAYS)?));
     reversed.bench.latitude_deg *= -1.0;
-    let mut without = reversed.clone();
-    leave_angles_out(&mut without.bench);
+    let mut left_out = reversed.clone();
+    leave_angles_out(&mut left_out.bench);
     let mut is_told = true;
-    let slowest = [reversed, without].map(|simulation| {
+    let slowest = [reversed, left_out].map(|simulation| {
         timed_ms(|| {
             is_told &= matches!(diagnosed(&simulation), Err(DiagnosisError::Setup { .. }));
         })
@@ -228,16 +224,14 @@ fn time(small: bool) -> Result<Vec<Figure>, Error> {
     let name = |what: &str| format!("time of the gate at {rows} rows, {what}");
     let with = name("with a refit as given and corrected");
     let ratio = format!("time of the gate at {MORE} times the rows over {MORE} times the time");
+    let timed = |figure: Figure, runs| figure.timed(context.is_small()).over(runs, "");
+    let without = Figure::at_most(&name("without a refit"), 100.0, once, "ms");
+    let with = Figure::at_most(&with, 500.0, slowest[0].max(slowest[1]), "ms");
+    let ratio = Figure::within(&ratio, [0.0, 1.5], more / once / MORE);
     Ok(vec![
-        Figure::at_most(&name("without a refit"), 100.0, once, "ms")
-            .timed(small)
-            .over(TIMED_RUNS, ""),
-        Figure::at_most(&with, 500.0, slowest[0].max(slowest[1]), "ms")
-            .timed(small)
-            .over(2 * TIMED_RUNS, ""),
+        timed(without, TIMED_RUNS),
+        timed(with, 2 * TIMED_RUNS),
         Figure::truth("the latitude's sign stops the diagnosis", is_told),
-        Figure::within(&ratio, [0.0, 1.5], more / once / MORE)
-            .timed(small)
-            .over(TIMED_RUNS, ""),
+        timed(ratio, TIMED_RUNS),
     ])
 }

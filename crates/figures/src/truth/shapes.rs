@@ -11,9 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use super::drawn::{self, noisy};
 use super::judged::{self, within};
-use crate::harness::{
-    COVERAGE, COVERAGE_REASON, Context, DIAGNOSIS, Error, Figure, Population, Row, Sources, of,
-};
+use crate::harness::{Context, DIAGNOSIS, Error, Figure, Population, Row, Sources, of};
 
 /// What can move the records.
 const SOURCES: Sources = of(DIAGNOSIS, &[file!(), drawn::FILE, judged::FILE]);
@@ -52,7 +50,7 @@ pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
             let is_own = effect_of(&one.effect).is_some_and(|effect| effect.kind == kind);
             one.covered.filter(|_| is_own)
         };
-        rows.push(Row::share(name, covered).between(COVERAGE, COVERAGE_REASON));
+        rows.push(Row::share(name, covered).of_coverage());
     }
     context.measure(&population, &rows)
 }

@@ -40,15 +40,16 @@ pub(crate) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
     let wrong = "a cause beside walks: one named that is not there, without a walk of its gyro";
     let level =
         "the limit of walks alone, and two more for a second cause: 16 of 500 within the bound";
-    let held = |walks_itself: bool| {
-        move |one: &Mixed| (one.walks_itself == walks_itself).then_some(one.in_set)
+    let held = |gyro: &str, walks: bool| {
+        let name = format!("a cause beside walks: a set holds it, its own gyro {gyro}");
+        Row::share(name, move |one: &Mixed| {
+            (one.walks_itself == walks).then_some(one.in_set)
+        })
     };
-    let [still, walking] = ["not walking", "walking"]
-        .map(|gyro| format!("a cause beside walks: a set holds it, its own gyro {gyro}"));
     let mut rows = vec![
         Row::bound(wrong, |one: &Mixed| !one.wrong.is_empty()).at_most(0.05, level),
-        Row::share(still, held(false)),
-        Row::share(walking, held(true)),
+        held("not walking", false),
+        held("walking", true),
     ];
     let covered = "a cause beside walks: coefficients in their 95 % intervals";
     rows.extend(coefficient_rows(covered, |one: &Mixed| &one.covered));

@@ -180,11 +180,8 @@ fn over_alone(all: &[Runs]) -> Statistic {
 /// Median delays; runs without an alarm come last.
 fn told(all: &[Runs]) -> String {
     let median = |of: fn(&Delay) -> Option<f64>| {
-        let days = all
-            .iter()
-            .flatten()
-            .map(|run| of(run).unwrap_or(f64::INFINITY));
-        let mut days: Vec<f64> = days.collect();
+        let runs = all.iter().flatten();
+        let mut days: Vec<f64> = runs.map(|run| of(run).unwrap_or(f64::INFINITY)).collect();
         days.sort_by(f64::total_cmp);
         match days.get(days.len() / 2) {
             Some(days) if days.is_finite() => format!("{days:.2} days"),
@@ -208,9 +205,8 @@ fn of_sets(cells: &[(String, Arc<Records<Runs>>)]) -> [Figure; 3] {
         }
         all.extend(held);
     }
-    let least = of_cells
-        .iter()
-        .min_by(|one, other| one.0.share().total_cmp(&other.0.share()));
+    let cells_by_share = of_cells.iter();
+    let least = cells_by_share.min_by(|(one, _), (other, _)| one.share().total_cmp(&other.share()));
     let least = least.map_or("", |(_, name)| name.as_str());
     let of_cells = of_cells.iter().map(|(share, _)| *share).collect();
     let full = cells.iter().all(|(_, records)| records.full);
@@ -218,31 +214,21 @@ fn of_sets(cells: &[(String, Arc<Records<Runs>>)]) -> [Figure; 3] {
         reason: reason.to_owned(),
         ..Figure::of_statistic(name, &statistic, Some(target), full)
     };
-    const SETS: &str = "sets of 95 %";
-    const ALIKE: &str = "a step, a ramp and a cross-axis term of one gyro are alike for some hours";
-    let share = Statistic::Share(Proportion::of(all));
+    let of_share = |name: &str, statistic: Statistic| {
+        figure(name, statistic, Target::AtLeast(0.95), "sets of 95 %")
+    };
     let rarest = "the same of the effect and size with the least share";
-    let mut rarest = figure(
-        rarest,
-        Statistic::Least(of_cells),
-        Target::AtLeast(0.95),
-        SETS,
-    );
+    let mut rarest = of_share(rarest, Statistic::Least(of_cells));
     rarest.measured += &format!("; {least}");
+    let (share, mean) = (
+        Statistic::Share(Proportion::of(all)),
+        Statistic::Mean(sizes),
+    );
+    let alike = "a step, a ramp and a cross-axis term of one gyro are alike for some hours";
     [
-        figure(
-            "set at the alarm holds the truth",
-            share,
-            Target::AtLeast(0.95),
-            SETS,
-        ),
+        of_share("set at the alarm holds the truth", share),
         rarest,
-        figure(
-            "effects in the set, mean",
-            Statistic::Mean(sizes),
-            Target::AtMost(3.0),
-            ALIKE,
-        ),
+        figure("effects in the set, mean", mean, Target::AtMost(3.0), alike),
     ]
 }
 
@@ -253,12 +239,8 @@ fn of_jumps(context: &Context) -> Result<Vec<Figure>, Error> {
         let job = |number| knocks(number, z, lanes);
         let population = platforms(&format!("jumps {z}"), [40, 2], job);
         let name = |what: String| format!("attitude jumps of z = {z}: {what}");
-        let found = move |steps: &Vec<Option<usize>>| {
-            let all = steps
-                .iter()
-                .map(|own| own.is_some_and(|steps| steps <= within));
-            all.collect::<Vec<_>>()
-        };
+        let is_found = move |own: &Option<usize>| own.is_some_and(|steps| steps <= within);
+        let found = move |all: &Vec<_>| all.iter().map(is_found).collect::<Vec<_>>();
         let steps = |all: &[Vec<Option<usize>>]| {
             let all = all.iter().flatten();
             Statistic::Median(all.map(|own| own.unwrap_or(KNOCK_STEPS) as f64).collect())
@@ -287,11 +269,9 @@ fn knocks(number: u64, z: f64, lanes: usize) -> Result<Vec<Option<usize>>, Error
     let lanes = (0..lanes).map(|stream| lane(stream).with(effect, size, onset));
     let mut all: Vec<Lane> = lanes.collect();
     Platform::new(platform, onset + KNOCK_STEPS, walk)?.run(&mut all)?;
-    let steps = |lane: &Lane| match lane.alarms() {
-        (Some(alarm), _) if alarm.grid == Grid::Jumps && alarm.row > onset => {
-            Some(alarm.row - onset)
-        }
-        _ => None,
+    let steps = |lane: &Lane| {
+        let alarm = lane.alarms().0.filter(|alarm| alarm.grid == Grid::Jumps)?;
+        alarm.row.checked_sub(onset).filter(|steps| *steps > 0)
     };
     Ok(all.iter().map(steps).collect())
 }

@@ -76,9 +76,8 @@ impl<const E: usize> Test<E> {
         let alarm = alarm.filter(|grid| E > 1 || *grid == Grid::Effects);
         if let (Some(grid), None) = (alarm, &self.alarm) {
             let mut set = Vec::new();
-            let width = self.settings.set_width;
-            self.watch
-                .candidates(width, |candidate| set.push(candidate.effect));
+            let (watch, width) = (&self.watch, self.settings.set_width);
+            watch.candidates(width, |candidate| set.push(candidate.effect));
             self.alarm = Some(Alarm { row, grid, set });
         }
     }
@@ -211,9 +210,8 @@ impl Lane {
         }
         for (moving, row) in moving.iter_mut().zip(step.transition) {
             *moving += row.iter().zip(&self.error).map(|(a, b)| a * b).sum::<f64>();
-            *moving += (0..3)
-                .map(|gyro| row[3 + 3 * gyro] * drift[gyro])
-                .sum::<f64>();
+            let by_drift = (0..3).map(|gyro| row[3 + 3 * gyro] * drift[gyro]);
+            *moving += by_drift.sum::<f64>();
         }
         self.error[..3].copy_from_slice(&moving);
         // What follows in the order of the filter: walk, then the sample.
@@ -252,9 +250,8 @@ impl Lane {
     fn innovation(&self, observed: &Observed<f64, 3, 3, STATES>, accel: &[f64; 3]) -> [f64; 3] {
         core::array::from_fn(|k| {
             let (output, whitening) = (&observed.output[k], &observed.whitening[k]);
-            (0..3)
-                .map(|i| output[i] * self.error[i] + whitening[i] * accel[i])
-                .sum()
+            let part = |i: usize| output[i] * self.error[i] + whitening[i] * accel[i];
+            (0..3).map(part).sum()
         })
     }
 

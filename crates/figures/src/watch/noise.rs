@@ -46,9 +46,8 @@ impl Source {
             Noise::Larger(factor) => normals.map(|normal| factor * normal),
             Noise::Correlated(coefficient) => {
                 let fresh = (1.0 - coefficient * coefficient).sqrt();
-                self.before = core::array::from_fn(|place| {
-                    coefficient * self.before[place] + fresh * normals[place]
-                });
+                let before = self.before.map(|before| coefficient * before);
+                self.before = core::array::from_fn(|at| before[at] + fresh * normals[at]);
                 self.before
             }
             Noise::Student4 | Noise::Student4Both => core::array::from_fn(|place| {
@@ -56,11 +55,8 @@ impl Source {
                     return normals[place];
                 }
                 // χ² with four degrees of freedom; the variance of the quotient is 2.
-                let chi_square: f64 = self
-                    .normals::<4>()
-                    .map(|normal| normal * normal)
-                    .iter()
-                    .sum();
+                let squares = self.normals::<4>().map(|normal| normal * normal);
+                let chi_square: f64 = squares.iter().sum();
                 normals[place] * (2.0 / chi_square).sqrt()
             }),
         }

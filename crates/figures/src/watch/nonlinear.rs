@@ -4,9 +4,8 @@
 use gyrocal::watch::WatchedEffect;
 use gyrocal::{FilterSettings, Site};
 use gyrocal_diagnosis::{WatchAlarm, WatchCause, WatchOptions, watch_record};
-use gyrocal_evaluation::Statistic;
 use gyrocal_statistics::median;
-use gyrocal_truth::{Hidden, Population, simulate};
+use gyrocal_truth::{Hidden, Population, Simulation, simulate};
 use serde::{Deserialize, Serialize};
 
 use super::{DAY_S, platforms};
@@ -61,11 +60,8 @@ fn rows(id: Option<&str>, words: &str) -> Vec<Row<'static, Run>> {
         None => format!("nonlinear records of {DAYS} days, clean: alarms"),
         Some(_) => name("alarms before it"),
     };
-    let count = |all: &[Run]| {
-        let before = all.iter().filter(|run| run.before).count();
-        Statistic::Value(before as f64, all.len() as u64)
-    };
-    let mut rows = vec![Row::new(alarms, count).at_most(
+    let before = |run: &Run| usize::from(run.before);
+    let mut rows = vec![Row::count(alarms, before).at_most(
         0.0,
         "two years of them at 1 % a year: one of fifty populations has an alarm",
     )];
@@ -103,25 +99,17 @@ fn run(id: Option<&str>, number: u64) -> Result<Run, Error> {
     let mut scenario = population.scenario(number);
     let onset_s = ONSET_DAYS * DAY_S;
     let settings = FilterSettings::<f64>::at_site(Site::at_latitude_deg(scenario.latitude_deg));
-    let step = 8.0
-        / WatchedEffect::of(STEP)
-            .information_of_a_day(&settings)
-            .sqrt();
+    let of_a_day = WatchedEffect::of(STEP).information_of_a_day(&settings);
     if let Some(id) = id {
-        let size = if id == STEP {
-            ("size", step)
-        } else {
-            ("x_deg", KNOCK_RAD.to_degrees())
+        let size = match id {
+            STEP => ("size", 8.0 / of_a_day.sqrt()),
+            _ => ("x_deg", KNOCK_RAD.to_degrees()),
         };
         let hidden = Hidden::new(id, &[size, ("onset_s", onset_s)])?;
         scenario.hidden.push(hidden);
     }
-    let simulation = simulate(&scenario)?;
-    let replay = watch_record(
-        &simulation.record,
-        &simulation.bench,
-        &WatchOptions::default(),
-    )?;
+    let Simulation { record, bench, .. } = simulate(&scenario)?;
+    let replay = watch_record(&record, &bench, &WatchOptions::default())?;
     let late = |alarm: &&WatchAlarm| id.is_some() && alarm.time_s > onset_s;
     let holds = |set: &[WatchCause]| {
         set.iter().any(|cause| match id {

@@ -108,13 +108,8 @@ pub(super) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
     // Outliers of gyros turn the platform: alarms are true.
     let words = "Student t, 4 degrees, of all sensors";
     let cell = format!("sound 1e-5 {words}");
-    let population = years(
-        context,
-        (&cell, CLEAN.len()),
-        [SOUND, 0],
-        Noise::Student4Both,
-        [1e-5; 2],
-    );
+    let (place, noise) = ((&*cell, CLEAN.len()), Noise::Student4Both);
+    let population = years(context, place, [SOUND, 0], noise, [1e-5; 2]);
     let turned = |all: &Years| {
         let alarmed = all.iter().filter(|one| one.days.is_some());
         alarmed.map(|one| one.turned).collect::<Vec<_>>()
@@ -132,13 +127,8 @@ pub(super) fn figures(context: &Context) -> Result<Vec<Figure>, Error> {
     figures.extend(context.measure(&population, &rows)?);
     for (place, [declared, walk]) in UNDECLARED.into_iter().enumerate() {
         let cell = format!("undeclared {declared:e} {walk:e}");
-        let population = years(
-            context,
-            (&cell, place),
-            [WALKS, 0],
-            Noise::Declared,
-            [declared, walk],
-        );
+        let (place, walks) = ((&*cell, place), [declared, walk]);
+        let population = years(context, place, [WALKS, 0], Noise::Declared, walks);
         let name = format!(
             "walk {walk:.0e}, declared {declared:.0e}: delay to an alarm whose set holds a walk"
         );
@@ -153,14 +143,11 @@ fn told(all: &[Years]) -> String {
     let of_walks = all.iter().filter(|one| one.walks);
     let mut days: Vec<f64> = of_walks.filter_map(|one| one.days).collect();
     days.sort_by(f64::total_cmp);
-    let median = days.get(all.len() / 2).map_or_else(
-        || "no median within a year".to_owned(),
-        |days| format!("median {days:.1} days"),
-    );
+    let median = match days.get(all.len() / 2) {
+        Some(days) => format!("median {days:.1} days"),
+        None => "no median within a year".to_owned(),
+    };
     let alarms = all.iter().filter(|one| one.days.is_some()).count();
-    let (told, others) = (days.len(), alarms - days.len());
-    format!(
-        "{median}; {told} of {} within a year, {others} other alarms",
-        all.len()
-    )
+    let (told, others, all) = (days.len(), alarms - days.len(), all.len());
+    format!("{median}; {told} of {all} within a year, {others} other alarms")
 }

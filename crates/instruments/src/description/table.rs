@@ -2,6 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::names::named_units;
+use super::units::{DEG_PER_H, DEG_PER_S, RAD_PER_S};
+
 /// Rate or angle of the turntable that carries the unit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -16,38 +19,20 @@ pub struct TableColumn {
     pub axis: Option<[f64; 3]>,
 }
 
-/// Units of the rate or the angle of a turntable.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[non_exhaustive]
-pub enum TableUnit {
-    /// rad/s
-    #[serde(rename = "rad/s", alias = "rad/sec")]
-    RadPerS,
-    /// deg/s
-    #[serde(
-        rename = "deg/s",
-        alias = "deg/sec",
-        alias = "°/s",
-        alias = "º/s",
-        alias = "dps"
-    )]
-    DegPerS,
-    /// deg/h
-    #[serde(
-        rename = "deg/h",
-        alias = "deg/hr",
-        alias = "°/h",
-        alias = "º/h",
-        alias = "dph"
-    )]
-    DegPerH,
-    /// Radians.
-    #[serde(rename = "rad")]
-    Rad,
-    /// Degrees.
-    #[serde(rename = "deg", alias = "°", alias = "º")]
-    Deg,
+named_units! {
+    /// Units of the rate or the angle of a turntable.
+    TableUnit {
+        /// rad/s
+        RadPerS = RAD_PER_S,
+        /// deg/s
+        DegPerS = DEG_PER_S,
+        /// deg/h
+        DegPerH = DEG_PER_H,
+        /// Radians.
+        Rad = &["rad"],
+        /// Degrees.
+        Deg = &["deg", "°", "º"],
+    }
 }
 
 impl TableColumn {

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::names::named_units;
+
 /// A column of temperature.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -15,33 +17,22 @@ pub struct Temperature {
     pub unit: TemperatureUnit,
 }
 
-/// Units of temperature.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[non_exhaustive]
-pub enum TemperatureUnit {
-    /// °C
-    #[default]
-    #[serde(
-        rename = "C",
-        alias = "degC",
-        alias = "°C",
-        alias = "ºC",
-        alias = "Celsius"
-    )]
-    Celsius,
-    /// K
-    #[serde(rename = "K", alias = "Kelvin")]
-    Kelvin,
-    /// °F
-    #[serde(
-        rename = "F",
-        alias = "degF",
-        alias = "°F",
-        alias = "ºF",
-        alias = "Fahrenheit"
-    )]
-    Fahrenheit,
+named_units! {
+    /// Units of temperature.
+    TemperatureUnit {
+        /// °C
+        Celsius = &["C", "degC", "°C", "ºC", "Celsius"],
+        /// K
+        Kelvin = &["K", "Kelvin"],
+        /// °F
+        Fahrenheit = &["F", "degF", "°F", "ºF", "Fahrenheit"],
+    }
+}
+
+impl Default for TemperatureUnit {
+    fn default() -> Self {
+        Self::Celsius
+    }
 }
 
 impl TemperatureUnit {

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::names::named_units;
 use crate::date_time::DateTimes;
 
 /// Times of the samples: a column of time stamps, or a rate.
@@ -34,45 +35,29 @@ pub struct Time {
     pub jitter: Jitter,
 }
 
-/// Units and notations of time stamps.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[non_exhaustive]
-pub enum TimeUnit {
-    /// Seconds.
-    #[serde(rename = "s", alias = "sec", alias = "seconds")]
-    Second,
-    /// Milliseconds.
-    #[serde(rename = "ms", alias = "msec", alias = "milliseconds")]
-    Millisecond,
-    /// Microseconds.
-    #[serde(
-        rename = "us",
-        alias = "µs",
-        alias = "μs",
-        alias = "usec",
-        alias = "microseconds"
-    )]
-    Microsecond,
-    /// Nanoseconds.
-    #[serde(rename = "ns", alias = "nsec", alias = "nanoseconds")]
-    Nanosecond,
-    /// Minutes.
-    #[serde(rename = "min", alias = "minutes")]
-    Minute,
-    /// Hours.
-    #[serde(rename = "h", alias = "hr", alias = "hours")]
-    Hour,
-    /// Date and time of RFC 3339, as `2026-03-01T12:00:00.25Z`; a blank may stand for the T, and without an
-    /// offset the time is UTC. A leap second is the second after it.
-    #[serde(rename = "rfc3339")]
-    Rfc3339,
-    /// Seconds of the GPS week of the column `week_column`; without one the week turns over by itself.
-    #[serde(rename = "gps")]
-    Gps,
-    /// Days of a spreadsheet (serial date and time).
-    #[serde(rename = "excel")]
-    Excel,
+named_units! {
+    /// Units and notations of time stamps.
+    TimeUnit {
+        /// Seconds.
+        Second = &["s", "sec", "seconds"],
+        /// Milliseconds.
+        Millisecond = &["ms", "msec", "milliseconds"],
+        /// Microseconds.
+        Microsecond = &["us", "µs", "μs", "usec", "microseconds"],
+        /// Nanoseconds.
+        Nanosecond = &["ns", "nsec", "nanoseconds"],
+        /// Minutes.
+        Minute = &["min", "minutes"],
+        /// Hours.
+        Hour = &["h", "hr", "hours"],
+        /// Date and time of RFC 3339, as `2026-03-01T12:00:00.25Z`; a blank may stand for the T, and without an
+        /// offset the time is UTC. A leap second is the second after it.
+        Rfc3339 = &["rfc3339"],
+        /// Seconds of the GPS week of the column `week_column`; without one the week turns over by itself.
+        Gps = &["gps"],
+        /// Days of a spreadsheet (serial date and time).
+        Excel = &["excel"],
+    }
 }
 
 /// Meaning of time stamps that jitter.

@@ -2,60 +2,43 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Units of a rate.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[non_exhaustive]
-pub enum GyroUnit {
-    /// rad/s
-    #[serde(rename = "rad/s", alias = "rad/sec")]
-    RadPerS,
-    /// deg/s
-    #[serde(
-        rename = "deg/s",
-        alias = "deg/sec",
-        alias = "°/s",
-        alias = "º/s",
-        alias = "dps"
-    )]
-    DegPerS,
-    /// deg/h
-    #[serde(
-        rename = "deg/h",
-        alias = "deg/hr",
-        alias = "°/h",
-        alias = "º/h",
-        alias = "dph"
-    )]
-    DegPerH,
-    /// Raw counts.
-    #[serde(rename = "counts")]
-    Counts,
+use super::names::named_units;
+
+/// Names of the units of a rate.
+pub(super) const RAD_PER_S: &[&str] = &["rad/s", "rad/sec"];
+pub(super) const DEG_PER_S: &[&str] = &["deg/s", "deg/sec", "°/s", "º/s", "dps"];
+pub(super) const DEG_PER_H: &[&str] = &["deg/h", "deg/hr", "°/h", "º/h", "dph"];
+
+named_units! {
+    /// Units of a rate.
+    GyroUnit {
+        /// rad/s
+        RadPerS = RAD_PER_S,
+        /// deg/s
+        DegPerS = DEG_PER_S,
+        /// deg/h
+        DegPerH = DEG_PER_H,
+        /// Raw counts.
+        Counts = &["counts"],
+    }
 }
 
-/// Units of specific force.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[non_exhaustive]
-pub enum AccelUnit {
-    /// m/s²
-    #[serde(rename = "m/s2", alias = "m/s²", alias = "m/s^2", alias = "m/s/s")]
-    MetrePerS2,
-    /// ft/s²
-    #[serde(rename = "ft/s2", alias = "ft/s²", alias = "ft/s^2", alias = "ft/s/s")]
-    FootPerS2,
-    /// Local gravity.
-    #[serde(rename = "g", alias = "G")]
-    G,
-    /// Thousandths of local gravity.
-    #[serde(rename = "mg")]
-    MilliG,
-    /// Millionths of local gravity.
-    #[serde(rename = "ug", alias = "µg", alias = "μg")]
-    MicroG,
-    /// Raw counts.
-    #[serde(rename = "counts")]
-    Counts,
+named_units! {
+    /// Units of specific force.
+    AccelUnit {
+        /// m/s²
+        MetrePerS2 = &["m/s2", "m/s²", "m/s^2", "m/s/s"],
+        /// ft/s²
+        FootPerS2 = &["ft/s2", "ft/s²", "ft/s^2", "ft/s/s"],
+        /// Local gravity.
+        G = &["g", "G"],
+        /// Thousandths of local gravity.
+        MilliG = &["mg"],
+        /// Millionths of local gravity.
+        MicroG = &["ug", "µg", "μg"],
+        /// Raw counts.
+        Counts = &["counts"],
+    }
 }
 
 /// Scale of raw counts.

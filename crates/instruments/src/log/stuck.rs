@@ -2,8 +2,10 @@
 
 use core::ops::Range;
 
+use gyrocal::generated::catalogue::RATES;
 use gyrocal_record::InputErrorKind;
 
+use super::Log;
 use crate::columns::FileColumns;
 use crate::description::Gyro;
 use crate::error::{InstrumentError, Unfit};
@@ -19,7 +21,8 @@ const CHANCE: f64 = 1e-9;
 const COARSE: f64 = 0.6;
 
 /// Refuses rows at the end that repeat one another, and gyros that repeat a value while those about it scatter; of a log
-/// that turns rows of zeros at its end alone, as the unit may rest for as long in one step of coarse sensors.
+/// that turns rows of zeros at its end alone, as the unit may rest for as long in one step of coarse sensors, which
+/// [`refuse_still_at_stops`] tells once the stops are known.
 ///
 /// # Errors
 ///
@@ -109,6 +112,48 @@ pub(crate) fn refuse_still(
     ))
 }
 
+/// Refuses gyros that repeat a value at the stops of a log while those of the stops about it scatter.
+///
+/// # Errors
+///
+/// [`Unfit::Stuck`] with the first of these samples.
+pub(crate) fn refuse_still_at_stops(
+    log: &Log,
+    stops: &[Range<usize>],
+) -> Result<(), InstrumentError> {
+    // Pairs of successive samples within the stops, by the first of both.
+    let pairs = stops
+        .iter()
+        .flat_map(|stop| stop.start..stop.end.max(1) - 1);
+    let pairs: Vec<usize> = pairs.collect();
+    for (gyro, rate) in RATES.iter().enumerate().take(3) {
+        let value = |sample: usize| log.gyro[sample][gyro];
+        let sizes = pairs.iter().map(|at| (value(at + 1) - value(*at)).abs());
+        let changes = Changes::of_sizes(sizes.collect());
+        let equal: Vec<bool> = changes.sizes.iter().map(|size| *size == 0.0).collect();
+        let Some(still) = stretch(&equal, |run| changes.scatter_about(run)) else {
+            continue;
+        };
+        let first = pairs[still.start];
+        let stop = stops.iter().position(|stop| stop.contains(&first));
+        return Err(InstrumentError::unfit(
+            Unfit::Stuck,
+            format!(
+                "{} with the same output in {} samples from sample {} at {} s on, at stop {} of its log",
+                rate.id,
+                still.len() + 1,
+                first + 1,
+                log.time_s[first],
+                stop.map_or(0, |stop| stop + 1)
+            ),
+            "values that scatter as at the other stops",
+            "the sensor stood still, or rows are padding: give the stops without these samples with --stop, or cut the log \
+             there",
+        ));
+    }
+    Ok(())
+}
+
 /// The first stretch of repeats that chance does not give: row `k + 1` repeats row `k` for each of its numbers `k`.
 fn stretch(equal: &[bool], is_asked: impl Fn(&Range<usize>) -> bool) -> Option<Range<usize>> {
     let mut from = 0;
@@ -150,10 +195,11 @@ struct Changes {
 
 impl Changes {
     fn of(values: &[f64]) -> Self {
-        let sizes: Vec<f64> = values
-            .windows(2)
-            .map(|pair| (pair[1] - pair[0]).abs())
-            .collect();
+        let sizes = values.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+        Self::of_sizes(sizes.collect())
+    }
+
+    fn of_sizes(sizes: Vec<f64>) -> Self {
         let steps = sizes.iter().copied().filter(|size| *size > 0.0);
         let step = steps.fold(f64::INFINITY, f64::min);
         Self { sizes, step }

@@ -11,7 +11,7 @@ use crate::accel_from_positions::{AccelErrors, accel_from_positions};
 use crate::description::Description;
 use crate::error::{InstrumentError, Unfit};
 use crate::gyro_from_turns::{GyroCalibration, gyro_from_turns, refuse_axes_of_few_turns};
-use crate::log::{BadSamples, Log, of_logs};
+use crate::log::{BadSamples, Log, of_logs, refuse_still_at_stops};
 use crate::stop_means::{StopMeans, stop_means};
 
 /// A log reduced to its stops.
@@ -94,13 +94,14 @@ const LARGEST_SCALE_ERROR: f64 = 0.1;
 /// As [`accel_from_norm`] and [`gyro_from_turns`] where scales are estimated; [`Unfit::Norm`],
 /// [`Unfit::GyroScale`] and [`Unfit::Axes`] where given scales and axes contradict the stops and
 /// the turns between them; [`Unfit::NoAccelerometers`]; [`Unfit::Saturated`] where a gyro is at the end of its range
-/// at a stop. A turn in which it is there is left out.
+/// at a stop; [`Unfit::Stuck`] where it repeats a value there and scatters at the others. A turn in which it is there is left out.
 pub fn prepare(
     log: &Log,
     description: &Description,
     stops: &[Range<usize>],
 ) -> Result<PreparedTest, InstrumentError> {
     refuse_saturated_stops(log, stops)?;
+    refuse_still_at_stops(log, stops)?;
     let stops = stop_means(log, stops)?;
     prepare_means(log, description, stops, true)
 }
@@ -140,6 +141,7 @@ pub fn prepare_logs(
     let mut end_s = f64::NEG_INFINITY;
     for (number, (log, stops)) in logs.iter().enumerate() {
         refuse_saturated_stops(log, stops)?;
+        refuse_still_at_stops(log, stops)?;
         let (Some(from_s), Some(to_s)) = (log.time_s.first(), log.time_s.last()) else {
             continue;
         };

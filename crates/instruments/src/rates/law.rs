@@ -3,13 +3,11 @@
 use gyrocal_statistics::f_tail;
 use nalgebra::{DMatrix, DVector};
 
+use super::between_logs::{are_independent, free_differences, with_free_biases};
 use super::blocks::Blocks;
-use super::noise_model::{Fit, NoiseModel, PARTS, Variances, first_variances};
+use super::noise_model::{BETWEEN_LOGS, Fit, NoiseModel, PARTS, Variances, first_variances};
 use super::terms::RateTerm;
 use crate::multi_position::Term;
-
-/// Largest condition number of the columns, each scaled to length one, of determined terms.
-const WORST_CONDITION: f64 = 300.0;
 
 /// Most effects of one gyro that are added to its base law.
 const MOST_EFFECTS: usize = 4;
@@ -50,6 +48,8 @@ pub(super) struct Law {
     pub(super) fit: Fit,
     /// Degrees of freedom of each standard deviation.
     pub(super) degrees_of_freedom: Vec<f64>,
+    /// Differences of the biases of logs that the terms leave free.
+    pub(super) free_differences: usize,
 }
 
 /// Rates of one gyro with their noise.
@@ -77,19 +77,18 @@ impl Data<'_> {
             });
             let mut refitted: Vec<(RateTerm, f64)> = refitted.collect();
             refitted.sort_by(|a, b| b.1.total_cmp(&a.1));
-            let Some(&(term, gain)) = refitted.first() else {
+            let tested = refitted.iter().take(self.tried());
+            let tested = tested.map(|&(term, gain)| {
+                let p_value = self.p_value(&terms, term, gain, start);
+                (term, gain, p_value)
+            });
+            let mut significant = tested.filter(|(_, _, p_value)| *p_value <= false_alarm);
+            let Some((term, gain, p_value)) = significant.next() else {
                 break;
             };
-            // The noise is estimated: the gain of a likelihood whose scale is fitted is that of an F.
-            let freedom = self.rates.len() as f64 - (terms.len() + 1 + PARTS) as f64;
-            let f = (gain.max(0.0) / self.rates.len() as f64).exp_m1() * freedom;
-            let p_value = (self.tests(term) * f_tail(f, [1.0, freedom]).unwrap_or(1.0)).min(1.0);
-            if p_value > false_alarm {
-                break;
-            }
-            let near = refitted[1..]
-                .iter()
-                .filter(|(_, other)| gain - other < 2.0 * ALTERNATIVE_NATS);
+            let near = refitted.iter().filter(|(other, of_other)| {
+                *other != term && gain - of_other < 2.0 * ALTERNATIVE_NATS
+            });
             found.push(Found {
                 term,
                 p_value,
@@ -98,17 +97,92 @@ impl Data<'_> {
             terms.push(term);
             self.settle(&mut terms, &mut found, start)?;
         }
-        let fit = self.fit(&terms, start, true)?;
+        let columns = self.columns(&terms)?;
+        let free_differences = free_differences(&columns, self.logs);
+        let fit = self.restricted(&columns, start, free_differences)?;
+        let likely = self
+            .noise
+            .with_likely_change(fit.variances, free_differences);
+        let fitted = self.noise.fitted_parts();
         let degrees_of_freedom =
             self.noise
-                .degrees_of_freedom(&self.columns(&terms)?, &self.rates, fit.variances)?;
+                .degrees_of_freedom(&columns, &self.rates, likely, fitted)?;
         Some(Law {
             degrees_of_freedom,
+            free_differences,
             terms,
             found,
             undetermined,
             fit,
         })
+    }
+
+    /// Terms of a round that may be significant. Of several logs the one that gains most may be a change of the bias between
+    /// them, in front of one that shows within them.
+    fn tried(&self) -> usize {
+        match self.logs.len() {
+            1 => 1,
+            _ => REFITTED,
+        }
+    }
+
+    /// Family-wise p-value of a term beside others by twice the log-likelihood that it gains.
+    fn p_value(&self, terms: &[RateTerm], term: RateTerm, gain: f64, start: Variances) -> f64 {
+        // The noise is estimated: the gain of a likelihood whose scale is fitted is that of an F.
+        let freedom = self.rates.len() as f64 - (terms.len() + 1 + PARTS) as f64;
+        let f = (gain.max(0.0) / self.rates.len() as f64).exp_m1() * freedom;
+        let of_gain = f_tail(f, [1.0, freedom]).unwrap_or(1.0);
+        let p_value = match self.logs.len() {
+            1 => of_gain,
+            // The likelihood takes a few logs for more than they are.
+            _ => of_gain.max(self.p_value_between_logs(terms, term, start).unwrap_or(1.0)),
+        };
+        (self.tests(term) * p_value).min(1.0)
+    }
+
+    /// p-value of a term by its estimate over its standard deviation, whose degrees of freedom are those of the change of
+    /// the bias from log to log; with a bias for each log where the logs leave none.
+    fn p_value_between_logs(
+        &self,
+        terms: &[RateTerm],
+        term: RateTerm,
+        start: Variances,
+    ) -> Option<f64> {
+        let mut all = vec![term];
+        all.extend(terms);
+        let mut columns = self.columns(&all)?;
+        let free = free_differences(&columns, self.logs);
+        if free == 0 {
+            let others = with_free_biases(&self.columns(terms)?, self.logs);
+            columns = others.insert_column(0, 0.0);
+            columns.set_column(0, &term.column(self.gyro, self.logs)?);
+            if !are_independent(&columns) {
+                return None;
+            }
+        }
+        let fit = self.restricted(&columns, start, free)?;
+        let likely = self.noise.with_likely_change(fit.variances, free);
+        let uncertain = BETWEEN_LOGS..PARTS;
+        let freedom = self
+            .noise
+            .degrees_of_freedom(&columns, &self.rates, likely, uncertain)?[0];
+        f_tail(
+            fit.estimates[0].powi(2) / fit.covariance[(0, 0)],
+            [1.0, freedom],
+        )
+    }
+
+    /// Fit by restricted likelihood, without a change of the bias from log to log where no difference tells it.
+    fn restricted(
+        &self,
+        columns: &DMatrix<f64>,
+        mut start: Variances,
+        free_differences: usize,
+    ) -> Option<Fit> {
+        if free_differences == 0 {
+            start[BETWEEN_LOGS] = 0.0;
+        }
+        self.noise.fit(columns, &self.rates, start, true)
     }
 
     /// Bias, terms in the table's rate and in specific force, as far as they are determined together.
@@ -318,17 +392,4 @@ fn quarters(log: usize, blocks: &Blocks, from_s: f64, to_s: f64) -> impl Iterato
     times
         .filter(move |at| (from_s..=to_s).contains(at) && *at <= last_s)
         .map(move |time_s| RateTerm::Step { log, time_s })
-}
-
-fn are_independent(columns: &DMatrix<f64>) -> bool {
-    let mut scaled = columns.clone();
-    for mut column in scaled.column_iter_mut() {
-        let length = column.norm();
-        if length == 0.0 {
-            return false;
-        }
-        column /= length;
-    }
-    let values = scaled.singular_values();
-    values.max() <= WORST_CONDITION * values.min()
 }

@@ -6,6 +6,7 @@
 //! never lowers the likelihood.
 
 use core::f64::consts::PI;
+use core::ops::Range;
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
@@ -21,13 +22,17 @@ pub(super) type Variances = [f64; PARTS];
 
 /// The part that changes from log to log only: what of the bias a single log cannot show. Slow noise and
 /// repeated turn-ons make it.
-const BETWEEN_LOGS: usize = 4;
+pub(super) const BETWEEN_LOGS: usize = 4;
 
 /// Iterations; the likelihood changes by less than 0.05 after.
 const ITERATIONS: usize = 40;
 
 /// Information on the logarithm of a variance before any log: its standard deviation is ten.
 const LEAST_INFORMATION: f64 = 1e-2;
+
+/// Least variance of the bias from log to log over that of the mean of a log, of one free difference: few that are small by
+/// chance do not show that it is nothing. With it intervals hold 93 % and more for any change of the bias.
+const LEAST_BETWEEN_LOGS: f64 = 0.2;
 
 /// Degrees of freedom from which Student's distribution is the normal one.
 const MOST_FREEDOM: f64 = 1e6;
@@ -131,22 +136,22 @@ impl NoiseModel {
         Some(self.solve(columns, rates, variances)?.0)
     }
 
-    /// Degrees of freedom of the standard deviation of each coefficient by Satterthwaite's approximation with
-    /// the expected information on the variances: F. E. Satterthwaite, "An approximate distribution of
-    /// estimates of variance components", Biometrics Bulletin 2, 1946; M. G. Kenward and J. H. Roger, "Small
-    /// sample inference for fixed effects from restricted maximum likelihood", Biometrics 53, 1997.
+    /// Degrees of freedom of the standard deviation of each coefficient, where these parts are uncertain, by
+    /// Satterthwaite's approximation with the expected information on the variances: F. E. Satterthwaite, "An
+    /// approximate distribution of estimates of variance components", Biometrics Bulletin 2, 1946; M. G. Kenward and
+    /// J. H. Roger, "Small sample inference for fixed effects from restricted maximum likelihood", Biometrics 53, 1997.
     pub(super) fn degrees_of_freedom(
         &self,
         columns: &DMatrix<f64>,
         rates: &DVector<f64>,
         variances: Variances,
+        uncertain: Range<usize>,
     ) -> Option<Vec<f64>> {
         let (fit, inverse) = self.solve(columns, rates, variances)?;
         let across = &inverse * columns;
         let projection = &inverse - &across * &fit.covariance * across.transpose();
         // In the logarithms of the variances: a part that vanishes takes no share.
-        let fitted = self.known_parts()..PARTS;
-        let parts = fitted.map(|part| &self.parts[part] * variances[part]);
+        let parts = uncertain.map(|part| &self.parts[part] * variances[part]);
         let parts: Vec<DMatrix<f64>> = parts.collect();
         let weighted: Vec<DMatrix<f64>> = parts.iter().map(|part| &projection * part).collect();
         let count = parts.len();
@@ -169,6 +174,30 @@ impl NoiseModel {
             (2.0 * variance * variance / of_variance).clamp(1.0, MOST_FREEDOM)
         };
         Some((0..columns.ncols()).map(of_coefficient).collect())
+    }
+
+    /// Parts whose variances are fitted.
+    pub(super) fn fitted_parts(&self) -> Range<usize> {
+        self.known_parts()..PARTS
+    }
+
+    /// Variances with no less change of the bias from log to log than so many free differences of the biases leave
+    /// likely; none is known of no difference.
+    pub(super) fn with_likely_change(
+        &self,
+        mut variances: Variances,
+        free_differences: usize,
+    ) -> Variances {
+        if free_differences == 0 {
+            return variances;
+        }
+        let within_logs = &self.parts[BETWEEN_LOGS];
+        let others = self.parts[..BETWEEN_LOGS].iter().zip(variances);
+        let others = others.map(|(part, variance)| variance * part.dot(within_logs));
+        let of_means = (self.known.dot(within_logs) + others.sum::<f64>()) / within_logs.sum();
+        let least = LEAST_BETWEEN_LOGS * of_means / (free_differences as f64).powi(2);
+        variances[BETWEEN_LOGS] = variances[BETWEEN_LOGS].max(least);
+        variances
     }
 
     /// Number of parts whose variances are not fitted; they are the first.

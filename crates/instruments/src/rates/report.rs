@@ -50,7 +50,8 @@ pub struct RateNoise {
     pub bias_instability: f64,
     /// K \[deg/h/sqrt(s)\].
     pub rate_random_walk: f64,
-    /// Standard deviation of the bias from log to log beyond these \[deg/h\]; zero of a single log.
+    /// Standard deviation of the bias from log to log beyond these \[deg/h\]; zero of a single log, and of
+    /// several where the law assumes an equal bias.
     pub between_logs: f64,
 }
 
@@ -70,6 +71,9 @@ pub struct GyroRates {
     pub effects: Vec<RateEffect>,
     /// The noise.
     pub noise: RateNoise,
+    /// `true` if several logs leave no difference that tells how much the bias changes from one to the next, as those of a
+    /// position each do: all standard deviations assume that it was the same in all of them.
+    pub assumes_equal_bias: bool,
 }
 
 /// Result of an evaluation in rates.
@@ -97,6 +101,24 @@ pub struct RateReport {
     /// Samples that no noise explains, each with the median of those about it in its place.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub bad_samples: Vec<BadSamples>,
+}
+
+impl RateReport {
+    /// What the standard deviations assume of the logs, in words; `None` where these tell how much a bias changes from one
+    /// to the next.
+    #[must_use]
+    pub fn assumption(&self) -> Option<String> {
+        let gyros = self.gyros.iter().filter(|gyro| gyro.assumes_equal_bias);
+        let names: Vec<&str> = gyros.map(|gyro| &*gyro.gyro).collect();
+        (!names.is_empty()).then(|| {
+            format!(
+                "an equal bias in all {} logs, by the sigmas of {}: these positions leave no difference that would tell a \
+                 change, which goes into bias and terms alike. Repeat three positions, a log each, to tell it",
+                self.logs.len(),
+                names.join(", ")
+            )
+        })
+    }
 }
 
 impl GyroRates {

@@ -22,10 +22,10 @@ fn description(more: &str) -> Description {
 }
 
 /// Drift \[deg/h\] at a sample, beside Earth rate and the table.
-type Drift<'a> = &'a dyn Fn(usize) -> Vector3<f64>;
+pub(crate) type Drift<'a> = &'a dyn Fn(usize) -> Vector3<f64>;
 
 /// A log of ten samples a second: `up` in body axes, rate of the table about it \[rad/s\], matrix of the gyros.
-fn log(
+pub(crate) fn log(
     up: Vector3<f64>,
     samples: usize,
     table: &dyn Fn(usize) -> f64,
@@ -55,11 +55,11 @@ fn log(
     Log::from_samples(0.1, gyro, accel)
 }
 
-fn evaluated(logs: &[Log], more: &str) -> RateReport {
+pub(crate) fn evaluated(logs: &[Log], more: &str) -> RateReport {
     evaluate_rates(logs, &description(more), &RateSettings::default()).expect("evaluation")
 }
 
-fn near(gyro: &GyroRates, name: &str, truth: f64) {
+pub(crate) fn near(gyro: &GyroRates, name: &str, truth: f64) {
     let coefficient = gyro.coefficients.iter().find(|c| c.name == name);
     let coefficient = coefficient.unwrap_or_else(|| panic!("{name} in {:?}", gyro.coefficients));
     let z = (coefficient.estimate - truth) / coefficient.sigma;

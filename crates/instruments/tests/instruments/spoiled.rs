@@ -143,3 +143,33 @@ fn wild_samples_of_stops_are_left_out_and_told() {
     let json = serde_json::to_value(prepared(&log).unwrap().sensors()).unwrap();
     assert!(json.get("bad_samples").is_none());
 }
+
+#[test]
+fn a_gyro_that_stands_still_at_a_stop_is_told() {
+    let log = stops_and_turns(STOPS, &Unit::mems(), 3);
+    let stops = find_stops(&log, &StopSettings::default()).unwrap();
+    // 80 samples in the middle of the sixth stop.
+    let first = stops[5].start + 100;
+    let mut still = log.clone();
+    for sample in first + 1..first + 80 {
+        still.gyro[sample][1] = still.gyro[first][1];
+    }
+    let error = prepare(&still, &description(), &stops).unwrap_err();
+    assert_eq!(error.kind(), Some(Unfit::Stuck));
+    let told = error.to_string();
+    let place = format!(
+        "gyro_y with the same output in 80 samples from sample {}",
+        first + 1
+    );
+    assert!(
+        told.contains(&place) && told.contains("at stop 6"),
+        "{told}"
+    );
+    // A gyro whose steps are as large as its noise repeats values at every stop.
+    let mut coarse = log.clone();
+    for rate in &mut coarse.gyro {
+        rate[1] = (rate[1] / 0.02).round() * 0.02;
+    }
+    assert!(prepare(&coarse, &description(), &stops).is_ok());
+    assert!(prepare(&log, &description(), &stops).is_ok());
+}

@@ -3,7 +3,7 @@
 use gyrocal_document::{Screen, Standing};
 use gyrocal_instruments::rates::{GyroRates, RateReport};
 use gyrocal_record::Input;
-use gyrocal_statistics::format;
+use gyrocal_statistics::{NORMAL_97_5, format};
 use gyrocal_words::{counted, few};
 
 use crate::bad_samples::left_out;
@@ -106,7 +106,8 @@ fn biases(report: &RateReport, screen: &mut Screen) {
             screen.fact(&law.gyro, words);
         }
         if let (Some(earth), Some([rate, sigma])) = (earth, log.vertical_deg_per_h) {
-            let words = format!("{rate:.4} ± {sigma:.4} deg/h, Earth {earth:.4}");
+            let half_width = NORMAL_97_5 * sigma;
+            let words = format!("{rate:.4} ± {half_width:.4} deg/h (95 %), Earth {earth:.4}");
             screen.fact("vertical", words);
         }
         return;

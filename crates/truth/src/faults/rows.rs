@@ -3,7 +3,7 @@
 use core::ops::Range;
 
 use super::Broken;
-use crate::attitude::Attitude;
+use crate::attitude::{Attitude, cross, norm};
 
 impl Broken {
     fn rows(&self) -> usize {
@@ -43,10 +43,8 @@ impl Broken {
     fn most(&self, of: fn(f64, f64) -> f64) -> (usize, f64) {
         let size = |axis: usize| {
             let values = || self.record.accel_g.iter().map(move |row| row[axis]);
-            of(
-                values().fold(f64::MAX, f64::min),
-                values().fold(f64::MIN, f64::max),
-            )
+            let least = values().fold(f64::MAX, f64::min);
+            of(least, values().fold(f64::MIN, f64::max))
         };
         let mut axes: [_; 3] = core::array::from_fn(|axis| (axis, size(axis)));
         axes.sort_by(|a, b| b.1.total_cmp(&a.1));
@@ -205,12 +203,8 @@ pub(super) fn jump(broken: &mut Broken) {
     let angle_rad = broken.between([5.0, 60.0]).to_radians();
     let up = broken.record.accel_g[from];
     let any: [f64; 3] = core::array::from_fn(|_| broken.random.normal());
-    let across = [
-        any[1] * up[2] - any[2] * up[1],
-        any[2] * up[0] - any[0] * up[2],
-        any[0] * up[1] - any[1] * up[0],
-    ];
-    let size = across.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let across = cross(any, up);
+    let size = norm(across);
     let turn = Attitude::turned_by(across.map(|x| x * angle_rad / size));
     for row in &mut broken.record.accel_g[from..] {
         *row = turn.resolve(*row);

@@ -128,22 +128,16 @@ impl UnlistedEffect {
         let duration_s = scenario.duration_s;
         let named = |suffix: &str, further| {
             let instrument = if gyro { "gyro" } else { "accel" };
-            Self::named(
-                format!("{instrument}_{}.{suffix}", AXES[own]),
-                gyro,
-                further,
-            )
+            let id = format!("{instrument}_{}.{suffix}", AXES[own]);
+            Self::named(id, gyro, further)
         };
         let drift = |unit: Arc<Unit>| Self::of(kind.name(), true, own, unit);
         let output = |unit: Arc<Unit>| Self::of(kind.name(), false, own, unit);
         Ok(match kind {
             UnlistedKind::Tone => {
-                let period_h = odd_period_h(scenario, random);
-                let phase_deg = 360.0 * random.uniform();
-                named(
-                    "tone",
-                    vec![("period_h", period_h), ("phase_deg", phase_deg)],
-                )
+                let period = ("period_h", odd_period_h(scenario, random));
+                let phase = ("phase_deg", 360.0 * random.uniform());
+                named("tone", vec![period, phase])
             }
             UnlistedKind::Sign if gyro => named(&format!("sign_{}", AXES[other]), Vec::new()),
             UnlistedKind::Sign => named("sign", Vec::new()),

@@ -36,10 +36,9 @@ impl Motion<'_> {
         let start_s = self.state.moment.time_s;
         let duration_s = time_s - start_s;
         let rate = self.rate_deg_per_h(noise_deg_per_h);
-        let longest_s = if dot(rate, rate) < SLOW_DEG_PER_H * SLOW_DEG_PER_H {
-            self.longest_step_s
-        } else {
-            self.longest_step_s.min(longest_step_s(norm(rate)))
+        let longest_s = match dot(rate, rate) < SLOW_DEG_PER_H * SLOW_DEG_PER_H {
+            true => self.longest_step_s,
+            false => self.longest_step_s.min(longest_step_s(norm(rate))),
         };
         // Times on a grid are rounded: a millionth of a millionth more is no reason for two
         // steps. `as` saturates: a time that is not a number takes no step.
@@ -47,15 +46,13 @@ impl Motion<'_> {
         let steps = if duration_s > 0.0 { steps.max(1) } else { 0 };
         self.take_steps(steps, rate)?;
         for step in 1..=steps {
-            let end_s = if step == steps {
-                time_s
-            } else {
-                start_s + duration_s * (step as f64 / steps as f64)
+            let end_s = match step == steps {
+                true => time_s,
+                false => start_s + duration_s * (step as f64 / steps as f64),
             };
-            if self.has_switches {
-                self.switching_step_to(end_s, noise_deg_per_h)?;
-            } else {
-                self.state = self.stepped(end_s, noise_deg_per_h);
+            match self.has_switches {
+                true => self.switching_step_to(end_s, noise_deg_per_h)?,
+                false => self.state = self.stepped(end_s, noise_deg_per_h),
             }
         }
         Ok(())
@@ -108,10 +105,9 @@ impl Motion<'_> {
         while after.moment.time_s - before_s > SWITCH_S {
             let middle_s = 0.5 * (before_s + after.moment.time_s);
             let middle = self.stepped(middle_s, noise_deg_per_h);
-            if self.law.mode_changed(&middle.moment) {
-                after = middle;
-            } else {
-                before_s = middle_s;
+            match self.law.mode_changed(&middle.moment) {
+                true => after = middle,
+                false => before_s = middle_s,
             }
         }
         after
@@ -192,10 +188,8 @@ mod tests {
         let coarse = distance_rad(after(2.0, 3600.0, 1.0), exact);
         let half = distance_rad(after(2.0, 1800.0, 1.0), exact);
         // The next order makes up to a quarter of the error at an hour a step.
-        assert!(
-            (12.0..20.0).contains(&(coarse / half)),
-            "{coarse:e} / {half:e}"
-        );
+        let ratio = coarse / half;
+        assert!((12.0..20.0).contains(&ratio), "{coarse:e} / {half:e}");
     }
 
     #[test]

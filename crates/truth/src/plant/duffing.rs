@@ -52,11 +52,6 @@ fn simulate(setting: &Setting, replayed: Option<&[Vec<f64>]>) -> Run {
         let past = x - lag_s * v + 0.5 * lag_s * lag_s * rates(at)[1];
         vec![past + size("y.y^2") * x * x]
     };
-    run(
-        setting,
-        rates,
-        outputs,
-        |time_s, _| vec![drive.at(time_s)],
-        replayed,
-    )
+    let input = |time_s: f64, _: &[f64]| vec![drive.at(time_s)];
+    run(setting, rates, outputs, input, replayed)
 }

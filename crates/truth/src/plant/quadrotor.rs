@@ -59,13 +59,12 @@ fn simulate(setting: &Setting, replayed: Option<&[Vec<f64>]>) -> Run {
         readings
     };
     let feedback = |time_s: f64, readings: &[f64]| {
-        (0..3)
-            .map(|axis| {
-                let off = wanted[axis].at(time_s) - readings[axis];
-                let gain = 40.0 / [40.0, 40.0, 8.0][axis];
-                gain * (0.5 * off - 0.12 * readings[axis + 3])
-            })
-            .collect()
+        let torque = |axis: usize| {
+            let off = wanted[axis].at(time_s) - readings[axis];
+            let gain = 40.0 / [40.0, 40.0, 8.0][axis];
+            gain * (0.5 * off - 0.12 * readings[axis + 3])
+        };
+        (0..3).map(torque).collect()
     };
     run(setting, rates, outputs, feedback, replayed)
 }

@@ -72,10 +72,9 @@ pub fn with_strength(setting: &Setting, wanted: f64) -> Setting {
     for _ in 0..4 {
         let now = strength(&setting);
         // An effect with a threshold may not act at all at first.
-        let factor = if now > 0.0 {
-            (wanted / now).clamp(0.1, 10.0)
-        } else {
-            4.0
+        let factor = match now > 0.0 {
+            true => (wanted / now).clamp(0.1, 10.0),
+            false => 4.0,
         };
         setting.hidden.1 *= factor;
     }

@@ -55,11 +55,6 @@ fn simulate(setting: &Setting, replayed: Option<&[Vec<f64>]>) -> Run {
         let lower = at.state[1];
         vec![(lower + size("y.y^2") * lower * lower + size("y.bias")).min(FULL)]
     };
-    run(
-        setting,
-        rates,
-        outputs,
-        |time_s, _| vec![(2.7 + pump.at(time_s)).max(0.3)],
-        replayed,
-    )
+    let input = |time_s: f64, _: &[f64]| vec![(2.7 + pump.at(time_s)).max(0.3)];
+    run(setting, rates, outputs, input, replayed)
 }

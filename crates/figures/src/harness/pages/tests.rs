@@ -15,19 +15,13 @@ fn page() -> Vec<Row> {
         share("missed", 0, 1000),
         Figure::within("time", [0.0, 2.0], 1.0),
     ];
-    rows(&format!(
-        "# Figures\n\n| a | b |\n|---|---|\n| 1 | 2 |\n\n{}\n",
-        table_of(&figures)
-    ))
+    let other = "| a | b |\n|---|---|\n| 1 | 2 |";
+    rows(&format!("# Figures\n\n{other}\n\n{}\n", table_of(&figures)))
 }
 
 fn judged(figures: &[Figure]) -> Vec<Figure> {
-    compared_with(
-        "docs/figures/x.md",
-        "cargo figures x --write",
-        &page(),
-        figures,
-    )
+    let command = "cargo figures x --write";
+    compared_with("docs/figures/x.md", command, &page(), figures)
 }
 
 #[test]
@@ -35,31 +29,22 @@ fn shares_that_chance_explains_agree() {
     let time = Figure::within("time", [0.0, 2.0], 1.9);
     let result = judged(&[share("detected", 6, 8), share("missed", 1, 8), time]);
     assert_eq!(result.len(), 1, "{result:?}");
-    assert_eq!(
-        (result[0].measured.as_str(), result[0].holds),
-        ("2 of 2", Some(true))
-    );
+    assert_eq!(result[0].measured, "2 of 2");
+    assert_eq!(result[0].holds, Some(true));
 }
 
 #[test]
 fn percents_are_shares_where_the_name_says_so() {
     let of = |name: &str, measured: &str| {
-        let (name, measured) = (name.to_owned(), measured.to_owned());
-        Row {
-            name,
-            measured,
+        let row = Row {
+            name: name.to_owned(),
+            measured: measured.to_owned(),
             runs: 200,
-        }
-        .share()
-        .map(|share| share.hits)
+        };
+        row.share().map(|share| share.hits)
     };
-    assert_eq!(
-        of(
-            "gyro_x.bias: % of 95 % intervals",
-            "95.500 (95 %: 91 to 98)"
-        ),
-        Some(191)
-    );
+    let percent = "gyro_x.bias: % of 95 % intervals";
+    assert_eq!(of(percent, "95.500 (95 %: 91 to 98)"), Some(191));
     assert_eq!(of("detected", "0.955, bound 0.97"), Some(191));
     assert_eq!(of("mean NIS", "2.996"), None);
     assert_eq!(of("failures", "0"), None);
@@ -111,19 +96,14 @@ fn committed_pages_name_their_commit_and_can_be_read() {
             continue;
         }
         let text = std::fs::read_to_string(&path).expect("a page");
-        let topic = path
-            .file_stem()
-            .and_then(|stem| stem.to_str())
-            .expect("a name");
-        let origins = text.split("Printed by `cargo figures ");
-        let commits: Vec<usize> = origins
-            .skip(1)
-            .map(|origin| {
-                let commit = origin.split_once("` of commit ").map(|(_, rest)| rest);
-                let commit = commit.unwrap_or_default().chars();
-                commit.take_while(char::is_ascii_hexdigit).count()
-            })
-            .collect();
+        let topic = path.file_stem().expect("a name").display();
+        let origins = text.split("Printed by `cargo figures ").skip(1);
+        let commit = |origin: &str| {
+            let commit = origin.split_once("` of commit ").map(|(_, rest)| rest);
+            let commit = commit.unwrap_or_default().chars();
+            commit.take_while(char::is_ascii_hexdigit).count()
+        };
+        let commits: Vec<usize> = origins.map(commit).collect();
         let tables = text.lines().filter(|line| line.starts_with("| figure "));
         assert!(
             commits.len() == tables.count() && commits.iter().all(|digits| *digits >= 7),
@@ -164,17 +144,12 @@ fn no_row_of_an_earlier_commit_is_lost() {
     }
     for row in &moved.row {
         let Some(now) = &row.now else {
-            assert!(
-                row.gone.as_ref().is_some_and(|why| !why.is_empty()),
-                "{}: why?",
-                row.was
-            );
+            let gone = row.gone.as_ref().is_some_and(|why| !why.is_empty());
+            assert!(gone, "{}: why?", row.was);
             continue;
         };
-        assert!(
-            row.gone.is_none() && names.contains(now),
-            "no row is called `{now}`"
-        );
+        let is_there = row.gone.is_none() && names.contains(now);
+        assert!(is_there, "no row is called `{now}`");
     }
     for was in text("tests/data/figures/rows_57c517e1.txt").lines() {
         let is_listed = moved.row.iter().any(|row| matches(&row.was, was));
@@ -190,10 +165,8 @@ fn sources_of_parts_are_there() {
     let parts = topics.iter().flat_map(|topic| &topic.parts);
     let all = parts.map(|part| (&*part.name, &part.sources));
     for (name, sources) in all.chain([("judging", &crate::harness::sources::JUDGING)]) {
-        let manifests = sources
-            .packages
-            .iter()
-            .map(|package| workspace().join(package).join("Cargo.toml"));
+        let packages = sources.packages.iter();
+        let manifests = packages.map(|package| workspace().join(package).join("Cargo.toml"));
         let files = sources.files.iter().map(|file| workspace().join(file));
         for path in manifests.chain(files) {
             assert!(path.exists(), "{name}: {}", path.display());
