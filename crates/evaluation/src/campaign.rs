@@ -11,6 +11,7 @@ use std::path::PathBuf;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
+use gyrocal_hypothesis::Stop;
 use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
 use serde::de::DeserializeOwned;
@@ -103,7 +104,9 @@ impl Campaign {
     /// # Errors
     /// [`EvaluationError::File`], [`EvaluationError::Busy`], [`EvaluationError::NoResults`],
     /// [`EvaluationError::OtherCampaign`] and [`EvaluationError::Line`] for the file of results;
-    /// [`EvaluationError::Unstorable`] for a result that JSON cannot hold; [`EvaluationError::Threads`].
+    /// [`EvaluationError::Unstorable`] for a result that JSON cannot hold; [`EvaluationError::Threads`];
+    /// [`EvaluationError::Stopped`] if the job of this thread was asked to end: seeds that were finished are in the
+    /// file, those at work are not.
     ///
     /// # Panics
     /// If the job or `progress` does.
@@ -148,8 +151,13 @@ impl Campaign {
                 left: None,
             },
         ));
+        let stop = Stop::here();
         let one = |seed: u64| {
-            let finished = job(seed).map_err(|error| one_line(&*error.into()));
+            stop.check()?;
+            let finished = stop.over(|| job(seed));
+            // What a job says that was stopped is not its own.
+            stop.check()?;
+            let finished = finished.map_err(|error| one_line(&*error.into()));
             let (line, finished) = encode(seed, &finished)?;
             #[expect(
                 clippy::unwrap_used,
@@ -159,19 +167,12 @@ impl Campaign {
             Ok((seed, finished))
         };
         // One seed a task: run times of seeds may differ by any factor.
-        let fresh: Vec<(u64, Finished<T>)> = pool.install(|| {
-            missing
-                .into_par_iter()
-                .with_max_len(1)
-                .map(one)
-                .collect::<Result<_, EvaluationError>>()
-        })?;
-        results.extend(fresh);
-        if let Ok(collector) = collector.into_inner()
-            && let Some(store) = collector.store
-        {
-            store.finish()?;
-        }
+        let fresh: Result<Vec<(u64, Finished<T>)>, EvaluationError> =
+            pool.install(|| missing.into_par_iter().with_max_len(1).map(one).collect());
+        let store = collector.into_inner().map(|collector| collector.store);
+        let kept = store.ok().flatten().map_or(Ok(()), Store::finish);
+        results.extend(fresh?);
+        kept?;
         Ok(Outcome { results, resumed })
     }
 }
