@@ -7,6 +7,7 @@
 //! declared uncertainties explain is no part of the remainder.
 
 use gyrocal::{Anchored, Surveyed};
+use gyrocal_inference::stop;
 use gyrocal_statistics::student_probability;
 
 use crate::batch::calibrate_with_variances;
@@ -247,7 +248,8 @@ pub fn calibrate_with_budget(
     for (index, run) in runs.iter().enumerate() {
         check_record(run.record).map_err(|error| error.of_record(index, runs.len()))?;
     }
-    let (calibration, variances) = calibrate_with_variances(&Anchored(Surveyed), runs, options)?;
+    let found = calibrate_with_variances(&Anchored(Surveyed), runs, options);
+    let (calibration, variances) = stop::finished(found)?;
     // Each run has three angles of its own.
     let unknowns = PARAMETERS + 3 * runs.len();
     let values = calibration.fit.values();

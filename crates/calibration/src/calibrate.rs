@@ -1,6 +1,7 @@
 //! Entry points of the calibration.
 
 use gyrocal::{Anchored, Strapdown, Surveyed};
+use gyrocal_inference::stop;
 use gyrocal_record::{Bench, Record};
 use nalgebra::SMatrix;
 
@@ -39,7 +40,7 @@ pub fn calibrate(
 /// [`CalibrationError::NotConverged`] and [`CalibrationError::NoDescent`] of the batch
 /// estimator; [`CalibrationError::NotPositiveDefinite`] if the covariance found is not positive
 /// definite; [`CalibrationError::NoAttitude`] and [`CalibrationError::OneRecord`] of the streaming
-/// filter.
+/// filter; [`CalibrationError::Stopped`] if the job was asked to end.
 pub fn calibrate_runs(
     runs: &[Run<'_>],
     options: &Options,
@@ -55,11 +56,11 @@ fn calibrate_platform(
     progress: &mut dyn FnMut(usize),
 ) -> Result<Calibration, CalibrationError> {
     check_records(runs)?;
-    match (options.method, runs) {
+    stop::finished(match (options.method, runs) {
         (Method::Batch, _) => batch::calibrate(&Anchored(Surveyed), runs, None, options, progress),
         (Method::Streaming, [run]) => streaming(run, options, progress),
         (Method::Streaming, _) => Err(CalibrationError::OneRecord { found: runs.len() }),
-    }
+    })
 }
 
 /// Estimates the nine coefficients of a strapdown unit's gyros, in their own axes, from records of
@@ -98,7 +99,8 @@ fn calibrate_unit(
         });
     }
     let model = &Anchored(Strapdown);
-    batch::calibrate(model, runs, Some(gyro_axes), options, progress)
+    let axes = Some(gyro_axes);
+    stop::finished(batch::calibrate(model, runs, axes, options, progress))
 }
 
 /// Standard deviations of the coefficients from the first of several runs alone, in the order of

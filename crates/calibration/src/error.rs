@@ -1,6 +1,7 @@
 //! Errors of this crate.
 
 use gyrocal::EstimationError;
+use gyrocal_inference::{PassError, Stopped};
 
 /// Errors of this crate.
 #[derive(Debug, thiserror::Error)]
@@ -142,6 +143,9 @@ pub enum CalibrationError {
         /// The longest, s.
         most_s: f64,
     },
+    /// The job was asked to end.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
     /// The covariance of the coefficients is not positive definite: rounding errors exceed the
     /// variance of a combination of coefficients.
     #[error(
@@ -154,10 +158,13 @@ pub enum CalibrationError {
 
 impl CalibrationError {
     /// A failed pass over the record of this index, counted from 0.
-    pub(crate) fn pass(index: usize, source: EstimationError) -> Self {
-        Self::Pass {
-            run: index + 1,
-            source,
+    pub(crate) fn pass(index: usize, error: PassError) -> Self {
+        match error {
+            PassError::Estimation(source) => Self::Pass {
+                run: index + 1,
+                source,
+            },
+            PassError::Stopped(stopped) => stopped.into(),
         }
     }
 

@@ -7,6 +7,7 @@ use gyrocal::{
     Drift, EstimationError, ExtensionFilter, FilterSettings, InitialAttitude, Innovation,
     PlatformFilter, Strapdown,
 };
+use gyrocal_inference::stop;
 use gyrocal_record::Record;
 
 use crate::coefficients::PARAMETERS;
@@ -104,6 +105,7 @@ pub fn run_strapdown_filter(
     let filter = StrapdownFilter::new(Strapdown, start, settings, attitude);
     let mut filter = filter.map_err(at(0))?;
     for row in 0..rows {
+        stop::check_at(row)?;
         work::count_filtered_row();
         let interval_s = match row {
             0 => 0.0,
@@ -152,6 +154,7 @@ pub(crate) fn run_filter<F: Form<f64>>(
     };
     let mut filter = filter.map_err(at(0))?;
     for row in 0..rows {
+        stop::check_at(row)?;
         work::count_filtered_row();
         if row > 0 {
             let interval_s = record.time_s[row] - record.time_s[row - 1];

@@ -1,5 +1,6 @@
 //! `gyrocal simulate`: a record and its bench description from a scenario.
 
+use std::ops::ControlFlow;
 use std::path::PathBuf;
 
 use clap::Args;
@@ -55,8 +56,11 @@ pub(crate) fn run(arguments: &SimulateArguments) -> Result<Reply, Failure> {
     }
     tracing::debug!(?scenario, "read");
     let mut progress = Progress::new("simulating", scenario.grid_rows());
-    let simulation = simulate_watched(&scenario, &[], |rows| progress.reach(rows))
-        .map_err(|error| Failure::of(&arguments.scenario, error))?;
+    let simulation = simulate_watched(&scenario, &[], |rows| {
+        progress.reach(rows);
+        ControlFlow::Continue(())
+    })
+    .map_err(|error| Failure::of(&arguments.scenario, error))?;
     drop(progress);
     tracing::info!(rows = simulation.record.len(), "simulated");
     let mut answer = Reply::of(summary(arguments, &scenario, &simulation), String::new());

@@ -1,6 +1,7 @@
 //! Two records together: what is left of the sets that the first one had.
 
 use gyrocal_calibration::{CalibrationError, FittedPlatform, GyroAxes, NoiseModel, Options, Run};
+use gyrocal_hypothesis::stop;
 
 use crate::candidates::{candidates, times};
 use crate::error::DesignError;
@@ -79,6 +80,7 @@ pub fn compare(
         .cases
         .iter()
         .map(|case| judged(case, &unknowns, &information));
+    stop::check()?;
     Ok(Compared {
         coefficients,
         sets: judged

@@ -1,6 +1,7 @@
 //! Errors of this crate.
 
 use gyrocal_calibration::CalibrationError;
+use gyrocal_hypothesis::Stopped;
 
 /// Errors of this crate.
 #[derive(Debug, thiserror::Error)]
@@ -9,6 +10,9 @@ pub enum DesignError {
     /// A fit or a pass over a record failed.
     #[error(transparent)]
     Calibration(#[from] CalibrationError),
+    /// The job was asked to end.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
     /// The effect has no signature, or is not in the catalogue.
     #[error("`{effect}` is no effect that a run can be planned for")]
     NotPlannable {

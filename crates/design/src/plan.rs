@@ -2,6 +2,7 @@
 
 use gyrocal_calibration::{CalibrationError, FittedPlatform, Run};
 use gyrocal_diagnosis::manifest;
+use gyrocal_hypothesis::stop;
 
 use crate::error::DesignError;
 use crate::named_cause::{NamedCause, without_compared_walks};
@@ -28,6 +29,15 @@ const MOST_S: f64 = 366.0 * 86_400.0;
 /// # Errors
 /// [`DesignError`].
 pub fn plan(
+    fitted: &FittedPlatform<'_>,
+    run: &Run<'_>,
+    named: &[NamedCause],
+    options: &PlanOptions,
+) -> Result<PlanResult, DesignError> {
+    stop::finished(planned(fitted, run, named, options))
+}
+
+fn planned(
     fitted: &FittedPlatform<'_>,
     run: &Run<'_>,
     named: &[NamedCause],

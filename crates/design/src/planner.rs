@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 
 use gyrocal_calibration::{CalibrationError, FittedPlatform};
+use gyrocal_hypothesis::Stop;
 use rayon::prelude::*;
 
 use crate::attitude::{apart_deg, beside, first};
@@ -129,9 +130,10 @@ impl<'a, 'b> Planner<'a, 'b> {
             let mut seen = self.evaluate(evaluator, tried, duration_s)?;
             sort(&mut seen);
             let starts = distinct(seen, FOLLOWED);
+            let stop = Stop::here();
             let ends = starts
                 .into_par_iter()
-                .map(|start| self.local_search(evaluator, start));
+                .map(|start| stop.over(|| self.local_search(evaluator, start)));
             Ok(ends.collect::<Vec<_>>())
         })?;
         self.with(duration_s, FINE, |evaluator| {
@@ -159,10 +161,15 @@ impl<'a, 'b> Planner<'a, 'b> {
         if tried.is_empty() {
             return Err(DesignError::NoAttitude);
         }
+        let stop = Stop::here();
         let looked: Vec<_> = tried
             .into_par_iter()
-            .map(|angles_deg| (angles_deg, evaluator.evaluate(angles_deg)))
+            .map(|angles_deg| {
+                let found = stop.over(|| evaluator.evaluate(angles_deg));
+                (angles_deg, found)
+            })
             .collect();
+        stop.check()?;
         let mut seen = Vec::new();
         let (mut longest, mut failed) = ((0.0, [0.0; 3]), None);
         for (angles_deg, looked) in looked {

@@ -6,6 +6,7 @@ use gyrocal_calibration::{
     GyroAxes, Options, Run, RunResult, SiteQuantity, UnobservableCombination, calibrate_runs,
     calibrate_strapdown, first_run_sigmas, times_overlap,
 };
+use gyrocal_hypothesis::stop;
 use gyrocal_record::{
     AveragedReport, AzimuthReport, CALIBRATION_SCHEMA_VERSION, CalibrationMethod,
     CalibrationReport, Coefficient, EffectTest, FittedEffects, Manifest, OtherAzimuth,
@@ -69,7 +70,7 @@ pub enum CalibrationStep<'a> {
 /// how far it is.
 ///
 /// # Errors
-/// [`CalibrationError`] if the coefficients cannot be estimated.
+/// [`CalibrationError`] if the coefficients cannot be estimated, or if the job was asked to end.
 pub fn calibrate_and_diagnose(
     request: CalibrationRequest<'_>,
     mut told: impl FnMut(CalibrationStep<'_>),
@@ -90,6 +91,8 @@ pub fn calibrate_and_diagnose(
     let effects: Vec<EffectTest> = tests.collect();
     let first = first_run_sigmas(&runs, axes, options);
     let first = first.inspect_err(|error| told(CalibrationStep::FirstNotAlone(error)));
+    // Records that could not be diagnosed are told: those of a stopped job could.
+    stop::check()?;
     let fit = &calibration.fit;
     let verdict = calibration_verdict(fit, &effects);
     let setup = given.iter().flat_map(|record| record.setup);

@@ -19,7 +19,7 @@ mod untestable_rows;
 use std::borrow::Cow;
 
 use gyrocal_calibration::{CalibrationError, FittedPlatform, GyroAxes, NoiseModel, Run, work};
-use gyrocal_hypothesis::{ScoreTable, Searched};
+use gyrocal_hypothesis::{ScoreTable, Searched, stop};
 use gyrocal_record::{Bench, Record, SetupProblem};
 use gyrocal_setup::PlatformKind;
 use gyrocal_statistics::allan_test;
@@ -109,7 +109,7 @@ impl Diagnosis<'_> {
 ///
 /// # Errors
 /// [`DiagnosisError::Setup`] with the answer if a gross error of the set-up leaves nothing sound;
-/// other [`DiagnosisError`]s.
+/// [`DiagnosisError::Stopped`] if the job was asked to end; other [`DiagnosisError`]s.
 pub fn diagnose<'a>(
     record: &'a Record,
     bench: &'a Bench,
@@ -143,17 +143,19 @@ pub fn diagnose_watched<'a>(
     options: &DiagnoseOptions,
     mut watch: impl FnMut(Stage),
 ) -> Result<Diagnosis<'a>, DiagnosisError> {
+    // The gate may have made fits.
+    stop::check()?;
     let axes = found.usable_axes()?;
     let (usable, setup) = found.sound(options)?;
     request::check(&options.also, &usable, bench)?;
     let watch: &mut dyn FnMut(Stage) = &mut watch;
     let axes = axes.as_ref();
-    match usable {
+    stop::finished(match usable {
         Cow::Borrowed(record) => diagnose_sound(record, bench, axes, options, setup, watch),
         Cow::Owned(record) => {
             diagnose_sound(&record, bench, axes, options, setup, watch).map(Diagnosis::into_owned)
         }
-    }
+    })
 }
 
 /// A record without gross errors, or several as one, with the noise audited and the nominal model fitted.

@@ -1,4 +1,5 @@
 use gyrocal_calibration::CalibrationError;
+use gyrocal_hypothesis::Stopped;
 use gyrocal_statistics::StatisticsError;
 
 use gyrocal_answer::Answer;
@@ -16,6 +17,9 @@ pub enum DiagnosisError {
         /// The answer: its verdict is `setup`, and nothing was fitted.
         result: Box<Answer>,
     },
+    /// The job was asked to end.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
     /// Two series that belong together differ in length.
     #[error("{found} rows of {what}, expected {expected}, as many as the record has")]
     UnequalLengths {

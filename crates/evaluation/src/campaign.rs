@@ -11,6 +11,7 @@ use std::path::PathBuf;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
+use gyrocal_hypothesis::Stop;
 use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
 use serde::de::DeserializeOwned;
@@ -103,7 +104,9 @@ impl Campaign {
     /// # Errors
     /// [`EvaluationError::File`], [`EvaluationError::Busy`], [`EvaluationError::NoResults`],
     /// [`EvaluationError::OtherCampaign`] and [`EvaluationError::Line`] for the file of results;
-    /// [`EvaluationError::Unstorable`] for a result that JSON cannot hold; [`EvaluationError::Threads`].
+    /// [`EvaluationError::Unstorable`] for a result that JSON cannot hold; [`EvaluationError::Threads`];
+    /// [`EvaluationError::Stopped`] if the job of this thread was asked to end: seeds that were finished are in the
+    /// file, those at work are not.
     ///
     /// # Panics
     /// If the job or `progress` does.
@@ -140,8 +143,13 @@ impl Campaign {
             left: None,
         };
         let collector = Mutex::new(Collector::new(store, progress, state));
+        let stop = Stop::here();
         let one = |seed: u64| {
-            let finished = job(seed).map_err(|error| one_line(&*error.into()));
+            stop.check()?;
+            let finished = stop.over(|| job(seed));
+            // What a job says that was stopped is not its own.
+            stop.check()?;
+            let finished = finished.map_err(|error| one_line(&*error.into()));
             let (line, finished) = encode(seed, &finished)?;
             #[expect(
                 clippy::unwrap_used,
@@ -153,12 +161,10 @@ impl Campaign {
         // One seed a task: run times of seeds may differ by any factor.
         let tasks = missing.into_par_iter().with_max_len(1).map(one);
         let fresh: Result<Vec<_>, EvaluationError> = pool.install(|| tasks.collect());
+        let store = collector.into_inner().map(|collector| collector.store);
+        let kept = store.ok().flatten().map_or(Ok(()), Store::finish);
         results.extend(fresh?);
-        if let Ok(collector) = collector.into_inner()
-            && let Some(store) = collector.store
-        {
-            store.finish()?;
-        }
+        kept?;
         Ok(Outcome { results, resumed })
     }
 }

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use gyrocal::effect::EffectKind;
 use gyrocal_calibration::CalibrationError;
 use gyrocal_diagnosis::DiagnosisError;
+use gyrocal_hypothesis::Stopped;
 
 /// Failure of a campaign, or of the evaluation of one record.
 #[derive(Debug, thiserror::Error)]
@@ -86,6 +87,9 @@ pub enum EvaluationError {
     /// A record cannot be diagnosed.
     #[error("the record could not be diagnosed")]
     Diagnosis(#[from] DiagnosisError),
+    /// The job was asked to end; what was finished is in the file of results.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
     /// The covariance of a trial has no inverse.
     #[error("the covariance of the coefficients is not positive definite")]
     NotPositiveDefinite,

@@ -10,6 +10,7 @@ use std::sync::Mutex;
 use std::time::Duration;
 
 use gyrocal_evaluation::{Campaign, EvaluationError, Fingerprint, Outcome, Progress};
+use gyrocal_hypothesis::{Stop, stop};
 use serde::{Deserialize, Serialize};
 use tempfile::TempDir;
 
@@ -253,6 +254,50 @@ fn the_message_of_a_failure_has_its_sources() {
         .unwrap();
     let messages: Vec<String> = outcome.failures().map(|failure| failure.message).collect();
     assert_eq!(messages, ["outer: invalid digit found in string"]);
+}
+
+#[test]
+fn a_campaign_that_is_stopped_keeps_what_it_finished() {
+    let (_folder, path) = file();
+    let kept = campaign(0..40).results(&path);
+    let stop = Stop::default();
+    // One thread: the next seed begins after the progress of this one.
+    let one = kept.clone().threads(NonZeroUsize::new(1).unwrap());
+    let error = stop.over(|| {
+        one.run(job, |state| {
+            if state.done == 12 {
+                stop.ask();
+            }
+        })
+    });
+    assert!(matches!(error, Err(EvaluationError::Stopped(_))));
+    let (outcome, seeds) = asked(&kept);
+    assert_eq!((outcome.resumed(), seeds.len()), (12, 28));
+    assert_eq!(results_of(&outcome), results_of(&fresh(0..40)));
+}
+
+#[test]
+fn what_a_job_says_that_was_stopped_is_no_result() {
+    let (_folder, path) = file();
+    let kept = campaign(0..40).results(&path);
+    let stop = Stop::default();
+    let error = stop.over(|| {
+        kept.run(
+            |seed| {
+                if seed == 20 {
+                    stop.ask();
+                }
+                // The threads of the campaign work on the job of this one.
+                stop::check().map_err(|stopped| stopped.to_string())?;
+                job(seed)
+            },
+            |_| (),
+        )
+    });
+    assert!(matches!(error, Err(EvaluationError::Stopped(_))));
+    let (outcome, seeds) = asked(&kept);
+    assert!(seeds.contains(&20), "{seeds:?}");
+    assert_eq!(results_of(&outcome), results_of(&fresh(0..40)));
 }
 
 #[test]

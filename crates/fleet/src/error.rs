@@ -1,11 +1,15 @@
 //! Errors of this crate.
 
+use gyrocal_hypothesis::Stopped;
 use gyrocal_record::Error as RecordError;
 
 /// Errors of this crate.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum FleetError {
+    /// The job was asked to end.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
     /// Nothing to look at.
     #[error("found no diagnosed record, expected one at least")]
     NoRecords,

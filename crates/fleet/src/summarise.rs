@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use gyrocal_diagnosis::manifest;
-use gyrocal_hypothesis::ScoreTable;
+use gyrocal_hypothesis::{ScoreTable, Stopped};
 
 use crate::answer::{
     FleetCoefficient, FleetResult, FoundCause, Group, GroupKind, OutlierUnit, RecordProblem,
@@ -68,7 +68,8 @@ impl FleetOptions {
 /// What the records of a fleet show together. Their order does not matter.
 ///
 /// # Errors
-/// [`FleetError::NoRecords`] if no record can be used, [`FleetError::Probability`].
+/// [`FleetError::NoRecords`] if no record can be used, [`FleetError::Probability`], and [`FleetError::Stopped`] if the
+/// job was asked to end.
 pub fn summarise(
     records: &[FleetRecord],
     options: &FleetOptions,
@@ -110,7 +111,7 @@ pub fn summarise(
         outlier_probability: options.outlier_probability,
         coefficients: answers.collect(),
         groups: differing,
-        recurring: fleet.recurring(options),
+        recurring: fleet.recurring(options)?,
         found_in_units: fleet.found_in_units(),
     })
 }
@@ -282,7 +283,7 @@ impl<'a> Fleet<'a> {
             .collect()
     }
 
-    fn recurring(&self, options: &FleetOptions) -> Vec<RecurringCause> {
+    fn recurring(&self, options: &FleetOptions) -> Result<Vec<RecurringCause>, Stopped> {
         let units: Vec<UnitRecords<'_>> = self
             .names
             .iter()

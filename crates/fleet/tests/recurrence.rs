@@ -5,7 +5,7 @@ use gyrocal_fleet::RecurringCause;
 use gyrocal_fleet::recurrence::{
     Injected, RecurrenceOptions, ScoreSimulator, UnitRecords, oracle_finds, recurring,
 };
-use gyrocal_hypothesis::{ScoreTable, ScoredEffect};
+use gyrocal_hypothesis::{ScoreTable, ScoredEffect, Stop, Stopped};
 use gyrocal_statistics::deviates::Draw;
 use nalgebra::DMatrix;
 
@@ -61,11 +61,19 @@ fn fleet(cause: Option<(&str, f64, usize)>, seed: u64) -> Vec<ScoreTable> {
         .collect()
 }
 
+#[test]
+fn a_search_that_is_stopped_finds_nothing() {
+    let stop = Stop::default();
+    stop.ask();
+    let found = stop.over(|| recurring(&[], &RecurrenceOptions::default()));
+    assert_eq!(found.err(), Some(Stopped));
+}
+
 fn found(tables: &[ScoreTable]) -> Vec<RecurringCause> {
     let names: Vec<String> = (0..tables.len())
         .map(|unit| format!("unit-{unit}"))
         .collect();
-    recurring(&units(&names, tables), &RecurrenceOptions::default())
+    recurring(&units(&names, tables), &RecurrenceOptions::default()).unwrap()
 }
 
 fn units<'a>(names: &'a [String], tables: &'a [ScoreTable]) -> Vec<UnitRecords<'a>> {

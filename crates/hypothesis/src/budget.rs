@@ -7,6 +7,8 @@
 
 use core::cell::Cell;
 
+use gyrocal_inference::stop;
+
 /// Work of a search over that of one pass with all its signatures. A whole diagnosis of a sound record takes
 /// less than six passes. The search of one with causes of a hundred standard deviations beside walks would
 /// take sixty in the median. A hostile record is to take at most twenty times the work of a sound one, which
@@ -54,9 +56,10 @@ impl Budget {
         }
     }
 
-    /// Whether nothing more may be looked for after this `work`. The search is then cut.
+    /// Whether nothing more may be looked for after this `work`, or in a job that was stopped. The search is then
+    /// cut.
     pub(crate) fn is_spent(&self, work: u64) -> bool {
-        let is_spent = work > self.end.get();
+        let is_spent = work > self.end.get() || stop::is_asked();
         self.is_cut.set(self.is_cut.get() || is_spent);
         is_spent
     }
@@ -77,7 +80,7 @@ impl Budget {
     /// Whether not even what stands in the sets may be fitted, nor one effect in the place of two.
     pub(crate) fn is_exhausted(&self, work: u64) -> bool {
         let grace = GRACE.saturating_mul(self.pass.get());
-        work > self.end.get().saturating_add(grace)
+        work > self.end.get().saturating_add(grace) || stop::is_asked()
     }
 
     /// Work of one pass with all signatures.
@@ -101,6 +104,8 @@ fn own(pass: u64, on_record: u64) -> u64 {
 
 #[cfg(test)]
 mod tests {
+    use gyrocal_inference::Stop;
+
     use super::{Budget, FREE_BEFORE, GRACE, LONGEST_BEFORE, PASSES, own};
 
     #[test]
@@ -129,6 +134,17 @@ mod tests {
         // A model that counts no work has none.
         budget.start((0, 0), 0);
         assert!(!budget.is_spent(u64::MAX) && !budget.is_cut());
+    }
+
+    #[test]
+    fn a_search_of_a_stopped_job_has_spent_all() {
+        let budget = Budget::unlimited();
+        let stop = Stop::default();
+        stop.over(|| {
+            assert!(!budget.is_spent(0) && !budget.is_exhausted(0));
+            stop.ask();
+            assert!(budget.is_spent(0) && budget.is_exhausted(0) && budget.is_cut());
+        });
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! A model with effects that are given: no search, no test.
 
+use gyrocal_inference::stop;
 use gyrocal_scalar::effect::{Effect, EffectKind};
 
 use crate::accepted::Accepted;
@@ -81,6 +82,7 @@ pub fn fit_with<F: FittedModel>(
         };
         effects.push((effect.id, estimates));
     }
+    stop::check()?;
     Ok(FittedWith {
         gained_nats: own.noise.log_likelihood - nominal.noise.log_likelihood,
         nominal: nominal.fitted,

@@ -151,7 +151,7 @@ pub use finding::{
     Alternative, CONFIDENCE_SET_DEVIANCE, EffectEstimate, ExactEquivalent, Finding, NoneOfThese,
 };
 pub use given::{FittedWith, fit_with};
-pub use gyrocal_inference::{Column, ExtraColumns, Singular};
+pub use gyrocal_inference::{Column, ExtraColumns, Singular, Stop, Stopped, stop};
 pub use hypothesis::{Hypothesis, HypothesisSet, Selection, Unavailable, Variant};
 pub use information::{information, sigmas};
 pub use model::{FittedModel, ModelExtension, StateJump};

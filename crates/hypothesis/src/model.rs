@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::plant::Plant;
 use crate::rate_noise::{RateNoise, RateNoiseFit};
 use crate::rows::Covariate;
-use gyrocal_inference::{Column, ExtraColumns, Singular};
+use gyrocal_inference::{Column, ExtraColumns, Singular, Stopped};
 
 /// Value of an onset or a time constant that nothing sets.
 const UNSET_SHAPE: f64 = 1.0;
@@ -72,7 +72,7 @@ pub struct StateJump {
 /// rows eliminated: column 0 is the innovations.
 pub trait FittedModel: Clone {
     /// Reason why a fit or a pass fails.
-    type Error: From<Singular>;
+    type Error: From<Singular> + From<Stopped>;
 
     /// The plant.
     fn plant(&self) -> &'static Plant;

@@ -1,5 +1,6 @@
 //! The search and its result.
 
+use gyrocal_inference::stop;
 use gyrocal_scalar::effect::Effect;
 
 use crate::accepted::{Accepted, value_places};
@@ -110,7 +111,7 @@ impl<F> Searched<F> {
 /// Searches a record for the effects of a selection, from the nominal model at its best fit.
 ///
 /// # Errors
-/// Those of [`FittedModel::refitted`] and of passes over the record.
+/// Those of [`FittedModel::refitted`] and of passes over the record; [`Stopped`](crate::Stopped).
 pub fn search<F: FittedModel>(
     nominal: F,
     rows: Rows,
@@ -188,6 +189,7 @@ pub fn search_from<F: FittedModel>(
         let effects = effects.into_iter().map(|effect| effect.finding);
         effects.chain(walks.named).collect()
     };
+    stop::check()?;
     let open = open_hypotheses(&context, &state);
     Ok(Searched {
         scores: ScoreTable::of(&state.stage.bank, &open),

@@ -4,6 +4,7 @@
 use gyrocal_estimation::EstimationError;
 use gyrocal_scalar::Scalar;
 
+use crate::error::PassError;
 use crate::record::{Layout, LinearisedRecord, LinearisedRows, Start, StepOf};
 
 /// A parameter that changes as a random walk along the record.
@@ -289,8 +290,8 @@ impl LinearisedRecord for Augmented<'_> {
     fn visit(
         &self,
         rows: usize,
-        take: &mut dyn FnMut(&LinearisedRows) -> Result<(), EstimationError>,
-    ) -> Result<(), EstimationError> {
+        take: &mut dyn FnMut(&LinearisedRows) -> Result<(), PassError>,
+    ) -> Result<(), PassError> {
         let mut extended = LinearisedRows::new(self.layout.clone());
         self.of.visit(rows, &mut |own| {
             self.extend(own, &mut extended);

@@ -2,6 +2,7 @@
 
 use gyrocal_estimation::EstimationError;
 
+use crate::error::PassError;
 use crate::pass::{Made, Pass, Taken, Watch};
 use crate::small::{apply_transposed, dot};
 
@@ -111,7 +112,7 @@ impl Pass<'_> {
     ///
     /// # Errors
     /// As [`Self::reduce`].
-    pub fn jumps(&self, mut watch: impl FnMut(usize, &JumpScore)) -> Result<(), EstimationError> {
+    pub fn jumps(&self, mut watch: impl FnMut(usize, &JumpScore)) -> Result<(), PassError> {
         let mut kept = Kept::default();
         self.run(None, &mut kept)?;
         let layout = self.record.layout();

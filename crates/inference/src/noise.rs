@@ -4,6 +4,7 @@ use gyrocal_estimation::EstimationError;
 use gyrocal_scalar::Scalar;
 use nalgebra::DMatrix;
 
+use crate::error::PassError;
 use crate::pass::{Made, Pass, Taken, Watch};
 use crate::small::{add_triangle, apply, dot, product, sandwich};
 
@@ -345,7 +346,7 @@ impl Pass<'_> {
     ///
     /// # Errors
     /// As [`Self::reduce`].
-    pub fn noise_score(&self) -> Result<NoiseScore, EstimationError> {
+    pub fn noise_score(&self) -> Result<NoiseScore, PassError> {
         self.noise_score_from(0)
     }
 
@@ -353,7 +354,7 @@ impl Pass<'_> {
     ///
     /// # Errors
     /// As [`Self::reduce`].
-    pub fn noise_score_from(&self, first: usize) -> Result<NoiseScore, EstimationError> {
+    pub fn noise_score_from(&self, first: usize) -> Result<NoiseScore, PassError> {
         let none = vec![0.0; self.columns.len()];
         let mut filter = NoiseFilter::new(self, 0, first);
         self.run(Some(&none), &mut filter)?;
@@ -371,12 +372,13 @@ impl Pass<'_> {
         &self,
         first: usize,
         change: &[f64],
-    ) -> Result<NoiseScore, EstimationError> {
+    ) -> Result<NoiseScore, PassError> {
         let count = self.columns.len();
         if !change.is_empty() && change.len() != count {
             return Err(EstimationError::InvalidArgument {
                 expected: "one change for each column",
-            });
+            }
+            .into());
         }
         let mut filter = NoiseFilter::new(self, count, first);
         for (share, change) in filter.shares[1..].iter_mut().zip(change) {

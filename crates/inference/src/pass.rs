@@ -10,6 +10,7 @@ use nalgebra::DMatrix;
 
 use crate::augmented::{Augmented, FurtherNoise};
 use crate::column::Column;
+use crate::error::PassError;
 use crate::filter::Filter;
 use crate::gram::Gram;
 use crate::record::{KeptRecord, LinearisedRecord};
@@ -154,8 +155,8 @@ impl<'a> Pass<'a> {
     ///
     /// # Errors
     /// [`EstimationError::InvalidArgument`] if columns, factors or walks do not belong to the record, and
-    /// those of the model.
-    pub fn reduce(&self, mut watch: impl FnMut(&Whitened<'_>)) -> Result<Reduced, EstimationError> {
+    /// those of the model; [`PassError::Stopped`].
+    pub fn reduce(&self, mut watch: impl FnMut(&Whitened<'_>)) -> Result<Reduced, PassError> {
         self.reduced(&mut watch, false)
     }
 
@@ -166,7 +167,7 @@ impl<'a> Pass<'a> {
     pub fn reduce_with_cost(
         &self,
         mut watch: impl FnMut(&Whitened<'_>),
-    ) -> Result<Reduced, EstimationError> {
+    ) -> Result<Reduced, PassError> {
         self.reduced(&mut watch, true)
     }
 
@@ -174,7 +175,7 @@ impl<'a> Pass<'a> {
         &self,
         watch: &mut dyn FnMut(&Whitened<'_>),
         with_cost: bool,
-    ) -> Result<Reduced, EstimationError> {
+    ) -> Result<Reduced, PassError> {
         let mut sums = Sums {
             gram: Gram::new(self.columns.len()),
             values: 0,
@@ -216,7 +217,7 @@ impl<'a> Pass<'a> {
         &self,
         change: Option<&[f64]>,
         watch: &mut dyn Watch,
-    ) -> Result<Filter, EstimationError> {
+    ) -> Result<Filter, PassError> {
         let augmented;
         let record: &dyn LinearisedRecord = if self.further.sizes() == (0, 0) {
             self.record

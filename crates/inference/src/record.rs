@@ -4,6 +4,8 @@ use std::sync::Arc;
 
 use gyrocal_estimation::EstimationError;
 
+use crate::error::PassError;
+
 /// Numbers of states, outputs and noises of a linearised record, and its parameters.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Layout {
@@ -188,12 +190,12 @@ pub trait LinearisedRecord {
     /// be more of both.
     ///
     /// # Errors
-    /// Those of the model, and those of `take`.
+    /// Those of the model, those of `take`, and [`PassError::Stopped`].
     fn visit(
         &self,
         rows: usize,
-        take: &mut dyn FnMut(&LinearisedRows) -> Result<(), EstimationError>,
-    ) -> Result<(), EstimationError>;
+        take: &mut dyn FnMut(&LinearisedRows) -> Result<(), PassError>,
+    ) -> Result<(), PassError>;
 }
 
 /// A whole record whose first point is known or has its states as columns.
@@ -213,8 +215,8 @@ impl LinearisedRecord for LinearisedRows {
     fn visit(
         &self,
         _rows: usize,
-        take: &mut dyn FnMut(&LinearisedRows) -> Result<(), EstimationError>,
-    ) -> Result<(), EstimationError> {
+        take: &mut dyn FnMut(&LinearisedRows) -> Result<(), PassError>,
+    ) -> Result<(), PassError> {
         take(self)
     }
 }
@@ -232,8 +234,8 @@ impl KeptRecord {
     /// Linearises a record once.
     ///
     /// # Errors
-    /// Those of the model.
-    pub fn new(record: &dyn LinearisedRecord) -> Result<Self, EstimationError> {
+    /// As [`LinearisedRecord::visit`].
+    pub fn new(record: &dyn LinearisedRecord) -> Result<Self, PassError> {
         let mut blocks = Vec::new();
         record.visit(record.rows(), &mut |rows| {
             blocks.push(rows.clone());
@@ -264,8 +266,8 @@ impl LinearisedRecord for KeptRecord {
     fn visit(
         &self,
         rows: usize,
-        take: &mut dyn FnMut(&LinearisedRows) -> Result<(), EstimationError>,
-    ) -> Result<(), EstimationError> {
+        take: &mut dyn FnMut(&LinearisedRows) -> Result<(), PassError>,
+    ) -> Result<(), PassError> {
         let mut blocks = self.blocks.iter();
         blocks
             .by_ref()

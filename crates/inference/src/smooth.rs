@@ -3,6 +3,7 @@
 
 use gyrocal_estimation::EstimationError;
 
+use crate::error::PassError;
 use crate::filter::Filter;
 use crate::pass::{Made, Pass, Taken, Watch};
 use crate::small::{apply, apply_transposed, dot};
@@ -60,7 +61,7 @@ impl Pass<'_> {
     ///
     /// # Errors
     /// As [`Self::reduce`].
-    pub fn smooth(&self, change: &[f64]) -> Result<Smoothed, EstimationError> {
+    pub fn smooth(&self, change: &[f64]) -> Result<Smoothed, PassError> {
         let mut kept = Kept::default();
         self.run(Some(change), &mut kept)?;
         let (n, _) = self.sizes();

@@ -6,10 +6,12 @@ use gyrocal_estimation::{EstimationError, Integration, Manifold};
 
 use crate::augmented::Walks;
 use crate::column::{Column, ExtraColumns};
+use crate::error::PassError;
 use crate::record::{Layout, LinearisedRecord, LinearisedRows, Start};
 use crate::series::Series;
 use crate::small::squared;
 use crate::step::{Stepper, map_columns, sandwich};
+use crate::stop;
 
 /// Rows that are linearised before they are handed over.
 const BLOCK: usize = 256;
@@ -209,21 +211,22 @@ where
     /// they are at the first row.
     ///
     /// # Errors
-    /// Those of the model.
-    pub fn free_run(&self) -> Result<Vec<D::Point>, EstimationError> {
+    /// Those of the model, and [`PassError::Stopped`].
+    pub fn free_run(&self) -> Result<Vec<D::Point>, PassError> {
         self.free_run_over(0..self.points.len())
     }
 
     /// The same over some rows, from the point at the first of them.
     ///
     /// # Errors
-    /// Those of the model, and [`EstimationError::InvalidArgument`] if there are no such rows.
-    pub fn free_run_over(&self, rows: Range<usize>) -> Result<Vec<D::Point>, EstimationError> {
+    /// As [`Self::free_run`], and [`EstimationError::InvalidArgument`] if there are no such rows.
+    pub fn free_run_over(&self, rows: Range<usize>) -> Result<Vec<D::Point>, PassError> {
         self.check()?;
         if rows.is_empty() || rows.end > self.points.len() {
             return Err(EstimationError::InvalidArgument {
                 expected: "rows of the record, and at least one",
-            });
+            }
+            .into());
         }
         let mut stepper = self.stepper();
         let mut inputs = self.inputs;
@@ -233,6 +236,7 @@ where
         let mut parameters = self.parameters.to_vec();
         self.set_walks(rows.start, &mut parameters);
         for row in rows.start..rows.end - 1 {
+            stop::check_at(row)?;
             let (_, predicted) = stepper.advance(self.series, row, &point, &parameters)?;
             let turn = self.driven(row, &stepper.columns);
             let mut moving = [0.0; M];
@@ -294,8 +298,8 @@ where
     fn visit(
         &self,
         rows: usize,
-        take: &mut dyn FnMut(&LinearisedRows) -> Result<(), EstimationError>,
-    ) -> Result<(), EstimationError> {
+        take: &mut dyn FnMut(&LinearisedRows) -> Result<(), PassError>,
+    ) -> Result<(), PassError> {
         self.check()?;
         let rows = rows.min(self.points.len());
         let mut stepper = self.stepper();
@@ -304,6 +308,7 @@ where
         let mut d_parameters = vec![0.0; Y * self.model.output_parameters()];
         let mut block = LinearisedRows::new(self.layout());
         for row in 0..rows {
+            stop::check_at(row)?;
             self.add_row(row, (&mut inputs, &mut d_parameters), &mut block);
             if row + 1 < rows {
                 self.add_step(row, (&mut stepper, &mut parameters), &mut block)?;

@@ -28,7 +28,7 @@ mod walks;
 use chain::{Chain, VARIANCE, disturbances, none, solve};
 use density::Density;
 use gyrocal_estimation::{EstimationError, Integration};
-use gyrocal_inference::{KeptRecord, Pass};
+use gyrocal_inference::{KeptRecord, Pass, PassError, Stop, Stopped};
 use least_squares::LeastSquares;
 use nalgebra::DMatrix;
 
@@ -233,7 +233,12 @@ fn passes_over_a_kept_record_are_the_same() {
     assert_eq!(found.gram, expected.gram);
     // A parameter that it was not linearised by is refused.
     let some = chain_without_first(&missing, &trajectory, &parameters, &columns);
-    assert!(matches!(some, Err(EstimationError::InvalidArgument { .. })));
+    assert!(matches!(
+        some,
+        Err(PassError::Estimation(
+            EstimationError::InvalidArgument { .. }
+        ))
+    ));
 }
 
 /// A pass with a column of a parameter that the record has no derivatives by.
@@ -242,10 +247,39 @@ fn chain_without_first(
     trajectory: &[[f64; 2]],
     parameters: &[f64],
     columns: &gyrocal_inference::ExtraColumns,
-) -> Result<gyrocal_inference::Reduced, EstimationError> {
+) -> Result<gyrocal_inference::Reduced, PassError> {
     let mut case = chain.linearised(trajectory, parameters, &[0, 1, 2, 3], columns);
     case.trajectory.wanted = &[1, 2, 3];
     case.reduce()
+}
+
+#[test]
+fn passes_of_a_stopped_job_fail_as_such() {
+    let chain = Chain::measured(6);
+    let (trajectory, parameters, no_columns) = (chain.trajectory(), chain.parameters(), none());
+    let case = chain.linearised(&trajectory, &parameters, &[0, 1, 2, 3], &no_columns);
+    let kept = KeptRecord::new(&case.trajectory).unwrap();
+    let pass = case.pass();
+    let on_kept = pass.on(Some(&kept));
+    let change = vec![0.0; case.columns.len()];
+    let errors = || {
+        [
+            pass.reduce(|_| ()).err(),
+            on_kept.reduce(|_| ()).err(),
+            on_kept.smooth(&change).err(),
+            on_kept.noise_score().err(),
+            on_kept.jumps(|_, _| ()).err(),
+            KeptRecord::new(&case.trajectory).err(),
+            case.trajectory.free_run().err(),
+        ]
+    };
+    let stop = Stop::default();
+    assert!(stop.over(errors).iter().all(Option::is_none));
+    stop.ask();
+    let stopped = Some(PassError::Stopped(Stopped));
+    assert!(stop.over(errors).iter().all(|error| *error == stopped));
+    // The thread goes on with other jobs.
+    assert!(errors().iter().all(Option::is_none));
 }
 
 #[test]

@@ -68,7 +68,7 @@ pub fn compare(
 /// A failure that a plant alone has is told with its name; that of a record has its own.
 fn of_model(name: &str, reason: PlantError) -> PlantError {
     match reason {
-        PlantError::Input { .. } => reason,
+        PlantError::Input { .. } | PlantError::Stopped(_) => reason,
         reason => PlantError::OfModel {
             name: name.to_owned(),
             reason: Box::new(reason),

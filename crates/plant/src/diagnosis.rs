@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use gyrocal_answer::{ResidualVerdict, Validation};
 use gyrocal_hypothesis::{SearchOptions, Searched};
+use gyrocal_inference::stop;
 
 use crate::answer::{answer, remainder, summary};
 use crate::cross_validation::cross_validated;
@@ -20,14 +21,15 @@ use crate::series::RecordSeries;
 /// Diagnoses a record; with a later record of the same plant the gain of what was found is measured there.
 ///
 /// # Errors
-/// [`PlantError::NoFit`], [`PlantError::NotFinite`], [`PlantError::Singular`].
+/// [`PlantError::NoFit`], [`PlantError::NotFinite`], [`PlantError::Singular`], and [`PlantError::Stopped`] if the job was
+/// asked to end.
 pub fn diagnose(
     plant: &LoadedPlant,
     record: PlantRecord,
     later: Option<PlantRecord>,
     options: &SearchOptions,
 ) -> Result<Diagnosed, PlantError> {
-    diagnose_from(plant, record, later, options, None)
+    stop::finished(diagnose_from(plant, record, later, options, None))
 }
 
 /// The same from the values of another fit.

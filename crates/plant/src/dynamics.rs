@@ -4,7 +4,7 @@ mod step_memory;
 
 use std::sync::Arc;
 
-use gyrocal_inference::{Layout, LinearisedRows};
+use gyrocal_inference::{Layout, LinearisedRows, stop};
 
 use crate::error::PlantError;
 use crate::functions::{Functions, OutputsAt, Point, Sizes, Workspace};
@@ -203,23 +203,33 @@ impl<'a> Dynamics<'a> {
         outputs
     }
 
-    /// States at all rows from those at the first, without noise.
+    /// States at all rows from those at the first, without noise; NaN from where the job is asked to end.
     pub(crate) fn simulate(&mut self, course: &Course, initial: &[f64]) -> Vec<f64> {
         let mut points = initial.to_vec();
         let mut here = initial.to_vec();
         for row in 0..self.record.len().saturating_sub(1) {
+            if stop::check_at(row).is_err() {
+                points.resize(self.record.len() * initial.len(), f64::NAN);
+                break;
+            }
             here = self.next(row, course, &here);
             points.extend_from_slice(&here);
         }
         points
     }
 
-    /// Defects of a trajectory and residuals of its outputs, without derivatives.
+    /// Defects of a trajectory and residuals of its outputs, without derivatives; NaN from where the job is asked to
+    /// end.
     pub(crate) fn differences(&mut self, course: &Course, points: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let (n, y, rows) = (self.sizes.states, self.sizes.outputs, self.record.len());
         let mut defects = Vec::with_capacity(rows * n);
         let mut residuals = Vec::with_capacity(rows * y);
         for row in 0..rows {
+            if stop::check_at(row).is_err() {
+                defects.resize(rows.saturating_sub(1) * n, f64::NAN);
+                residuals.resize(rows * y, f64::NAN);
+                break;
+            }
             let here = &points[row * n..(row + 1) * n];
             let outputs = self.outputs(row, course, here);
             let measured = &self.record.outputs[row * y..(row + 1) * y];
@@ -262,6 +272,7 @@ impl<'a> Dynamics<'a> {
         let mut out = OutputsAt::new(self.sizes);
         let mut step = StepMemory::new(self.sizes, p);
         for row in 0..rows {
+            stop::check_at(row)?;
             let here = &points[row * n..(row + 1) * n];
             self.set_parameters(row, course);
             self.set_inputs(row, 0.0);

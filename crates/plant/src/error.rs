@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use gyrocal_hypothesis::Singular;
+use gyrocal_inference::{PassError, Stopped};
 
 /// A plant or a record that cannot be used, or a fit that fails.
 #[derive(Debug, thiserror::Error)]
@@ -50,6 +51,9 @@ pub enum PlantError {
         "the record does not determine all parameters and initial states together; give priors, or hold some"
     )]
     Singular,
+    /// The job was asked to end.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
     /// No start leads to a fit.
     #[error(
         "the model cannot be fitted to the record from any start: {reason}; check units and signs of the \
@@ -74,6 +78,16 @@ pub enum PlantError {
 impl From<Singular> for PlantError {
     fn from(_: Singular) -> Self {
         Self::Singular
+    }
+}
+
+/// A pass fails where the numbers do not suffice, or in a job that was stopped.
+impl From<PassError> for PlantError {
+    fn from(error: PassError) -> Self {
+        match error {
+            PassError::Stopped(stopped) => stopped.into(),
+            PassError::Estimation(_) => Self::Singular,
+        }
     }
 }
 

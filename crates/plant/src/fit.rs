@@ -5,6 +5,7 @@ mod criteria;
 use std::sync::Arc;
 
 use gyrocal_answer::{LaterFit, OutputFit, PlantFit};
+use gyrocal_inference::stop;
 use gyrocal_words::plant::is_coloured;
 
 use crate::answer::{noise, output_tests, parameters, summary};
@@ -39,7 +40,7 @@ pub struct Fit {
 ///
 /// # Errors
 /// [`PlantError::Input`] if `first_rows` leave no reading, [`PlantError::NoFit`], [`PlantError::NotFinite`],
-/// [`PlantError::Singular`].
+/// [`PlantError::Singular`], and [`PlantError::Stopped`] if the job was asked to end.
 ///
 /// # Example
 /// ```no_run
@@ -57,6 +58,16 @@ pub struct Fit {
 /// # Ok::<(), gyrocal_plant::PlantError>(())
 /// ```
 pub fn fit(
+    plant: &LoadedPlant,
+    record: NamedRecord,
+    later: Option<NamedRecord>,
+    first_rows: usize,
+    at: &mut dyn FnMut(&'static str, f64),
+) -> Result<Fit, PlantError> {
+    stop::finished(fit_record(plant, record, later, first_rows, at))
+}
+
+fn fit_record(
     plant: &LoadedPlant,
     record: NamedRecord,
     later: Option<NamedRecord>,

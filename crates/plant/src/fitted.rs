@@ -162,8 +162,7 @@ impl FittedPlant {
         let mut whitened = Vec::new();
         self.linearised(&[])?
             .pass(&self.noise, &[])
-            .reduce(|seen| whitened.push((seen.row, seen.output, seen.columns[0])))
-            .map_err(|_| PlantError::Singular)?;
+            .reduce(|seen| whitened.push((seen.row, seen.output, seen.columns[0])))?;
         Ok(whitened)
     }
 

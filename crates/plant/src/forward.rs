@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use gyrocal_answer::PlantFit;
 use gyrocal_hypothesis::ModelExtension;
+use gyrocal_inference::stop;
 use gyrocal_record::ResultTable;
 use nalgebra::{DMatrix, DVector};
 
@@ -93,6 +94,7 @@ pub fn simulate(
     let course = solver.course(&known.values);
     let mut dynamics = solver.dynamics();
     let points = dynamics.simulate(&course, &problem.initial(&known.values));
+    stop::check()?;
     let description = &plant.description;
     let states = description.states.len();
     if let Some(place) = points.iter().position(|value| !value.is_finite()) {

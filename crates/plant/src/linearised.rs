@@ -29,9 +29,9 @@ impl Linearised {
 /// Eliminates the states.
 ///
 /// # Errors
-/// [`PlantError::Singular`] if the numbers do not suffice.
+/// [`PlantError::Singular`] if the numbers do not suffice, [`PlantError::Stopped`].
 pub(crate) fn reduce(pass: &Pass<'_>) -> Result<Reduced, PlantError> {
-    let reduced = pass.reduce(|_| ()).map_err(|_| PlantError::Singular)?;
+    let reduced = pass.reduce(|_| ())?;
     let is_finite = reduced.gram.iter().all(|value| value.is_finite());
     is_finite.then_some(reduced).ok_or(PlantError::Singular)
 }

@@ -10,7 +10,7 @@ use std::sync::{Arc, OnceLock};
 use crate::linearised::reduce;
 use gyrocal_answer::{AlternativeKind, Coefficients, Finding, NextRun, NextSigma, ToldApart};
 use gyrocal_hypothesis::{CONFIDENCE_SET_DEVIANCE, FittedModel as _};
-use gyrocal_inference::Column;
+use gyrocal_inference::{Column, stop};
 use gyrocal_scalar::effect::Effect;
 use gyrocal_statistics::normal_probability;
 use nalgebra::{Cholesky, DMatrix, DVector};
@@ -46,7 +46,7 @@ impl Diagnosed {
     /// [`PlantError::Input`] of a run in which the model leaves the numbers, [`PlantError::Singular`].
     pub fn forecast(&mut self, runs: Vec<NamedRecord>) -> Result<(), PlantError> {
         let forecasts = runs.into_iter().map(|run| self.next_run(run));
-        let mut forecasts: Vec<NextRun> = forecasts.collect::<Result<_, _>>()?;
+        let mut forecasts: Vec<NextRun> = stop::finished(forecasts.collect::<Result<_, _>>())?;
         forecasts.sort_by(|a, b| {
             let told = least_probability(b).total_cmp(&least_probability(a));
             told.then(mean_ratio(a).total_cmp(&mean_ratio(b)))

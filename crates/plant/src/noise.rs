@@ -174,10 +174,8 @@ impl NoiseProblem<'_> {
         } else {
             usize::MAX
         };
-        self.lin
-            .pass(&noise, self.lines)
-            .noise_score_of_columns(first, asked.changes.unwrap_or_default())
-            .map_err(|_| PlantError::Singular)
+        let pass = self.lin.pass(&noise, self.lines);
+        Ok(pass.noise_score_of_columns(first, asked.changes.unwrap_or_default())?)
     }
 
     /// Without noise of the rates each output has a Gram matrix of its own, at the declared noise.

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 
 use gyrocal_answer::RecordResult;
 use gyrocal_hypothesis::{FittedModel as _, SearchOptions};
+use gyrocal_inference::stop;
 
 use crate::answer::{coefficients, summary};
 use crate::diagnosed::Diagnosed;
@@ -57,7 +58,8 @@ pub fn diagnose_records(
     let parts: Vec<PlantRecord> = records.iter().map(|one| one.record.clone()).collect();
     let start = start(plant, &alone);
     let record = PlantRecord::joined(&parts);
-    let mut together = diagnose_from(plant, record, later, options, start.as_deref())?;
+    let together = diagnose_from(plant, record, later, options, start.as_deref());
+    let mut together = stop::finished(together)?;
     together.answer.records = results(plant, &together, &records, &alone);
     Ok(DiagnosedRecords { together, alone })
 }

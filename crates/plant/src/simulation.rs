@@ -47,8 +47,7 @@ pub(crate) fn one_step(pass: &Pass<'_>, record: &PlantRecord) -> Result<Vec<f64>
     pass.reduce(|seen| {
         let place = seen.row * outputs + seen.output;
         expected[place] = record.outputs[place] - seen.deviation * seen.columns[0];
-    })
-    .map_err(|_| PlantError::Singular)?;
+    })?;
     Ok(expected)
 }
 

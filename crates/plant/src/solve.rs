@@ -204,9 +204,7 @@ impl<'a> Solver<'a> {
         } = self.normal(pass, values)?;
         let cholesky = Cholesky::new(information).ok_or(PlantError::Singular)?;
         let change = cholesky.solve(&gradient);
-        let smoothed = pass
-            .smooth(change.as_slice())
-            .map_err(|_| PlantError::Singular)?;
+        let smoothed = pass.smooth(change.as_slice())?;
         Ok(Step {
             promised: cost - change.dot(&gradient),
             covariance: cholesky.inverse(),

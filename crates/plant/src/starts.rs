@@ -7,6 +7,7 @@
 
 use gyrocal_answer::Starts;
 use gyrocal_hypothesis::ModelExtension;
+use gyrocal_inference::stop;
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_statistics::format::short;
 use gyrocal_statistics::math::exp;
@@ -98,8 +99,8 @@ pub(crate) fn best(
     let least = found.first().map_or(f64::INFINITY, |best| best.cost);
     starts.agreeing = found.iter().filter(|one| one.cost - least < SAME).count();
     let best = found.into_iter().next();
-    best.map(|best| (best, starts))
-        .ok_or_else(|| failed.of(problem, count))
+    let best = best.map(|best| (best, starts));
+    stop::finished(best.ok_or_else(|| failed.of(problem, count)))
 }
 
 /// Why starts failed, and how near the nearest came.

@@ -19,6 +19,7 @@ use crate::axes::{Axes, GivenAxes};
 use crate::bench::HeldBench;
 use crate::diagnose::{Given, of_effects};
 use crate::error::{Class, Failure, Outcome};
+use crate::job;
 use crate::origin::{json, manifest};
 use crate::record::HeldRecord;
 
@@ -95,10 +96,10 @@ pub(crate) fn calibrate(
         robust_sigmas,
         effects,
     };
-    Ok(py.detach(|| -> Outcome<_> {
+    job::run(py, || {
         let (report, log_likelihood) = report(&given, &request, command)?;
         Ok((json(&report)?, log_likelihood))
-    })?)
+    })
 }
 
 fn method_of(name: &str) -> Outcome<CalibrationMethod> {

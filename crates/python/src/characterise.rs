@@ -11,6 +11,7 @@ use gyrocal_record::SCHEMA_VERSION;
 use pyo3::prelude::*;
 
 use crate::error::{Class, Failure, Outcome};
+use crate::job;
 use crate::origin::{json, manifest};
 
 /// What is asked of a characterisation.
@@ -47,7 +48,7 @@ pub(crate) fn characterise(
         methods: methods_of(methods)?,
         threads,
     };
-    Ok(py.detach(|| {
+    job::run(py, || {
         let reports = cells.iter().map(|cell| report(*cell, &request));
         let report = CharacteriseReport {
             schema_version: SCHEMA_VERSION,
@@ -55,7 +56,7 @@ pub(crate) fn characterise(
             manifest: manifest(MODEL_HASH, request.seed, Vec::new(), command),
         };
         json(&report)
-    })?)
+    })
 }
 
 /// Each cell once; all of them if none is named.

@@ -14,6 +14,7 @@ use pyo3::prelude::*;
 use crate::axes::{Axes, GivenAxes};
 use crate::bench::HeldBench;
 use crate::error::{Failure, Outcome};
+use crate::job;
 use crate::origin::{answer_text, manifest};
 use crate::record::HeldRecord;
 
@@ -113,7 +114,7 @@ pub(crate) fn diagnose(
         axes: later_axes.as_ref(),
     });
     let options = options(effects, false_alarm, euler_filter)?;
-    Ok(py.detach(|| answer(given, later, &options, command))?)
+    job::run(py, || answer(given, later, &options, command))
 }
 
 /// Settings of a diagnosis.

@@ -5,6 +5,7 @@ use gyrocal_fleet::{FleetError, FleetOptions, FleetRecord, RecordName, RecordPro
 use pyo3::prelude::*;
 
 use crate::error::{Failure, Outcome};
+use crate::job;
 use crate::origin::{json, manifest};
 
 /// A diagnosed record as the module in Python hands it over.
@@ -57,7 +58,7 @@ pub(crate) fn summarise_fleet(
         outlier_probability,
         seed,
     };
-    Ok(py.detach(|| answer(records, &options, command))?)
+    job::run(py, || answer(records, &options, command))
 }
 
 fn answer(records: Vec<Diagnosed>, options: &FleetOptions, command: &str) -> Outcome<String> {

@@ -3,7 +3,8 @@
 //!
 //! Numbers come in as views of NumPy arrays or of Arrow buffers and are copied once, into the rows of
 //! a record; they go out as views of those rows. Results go out as JSON, the same text that the command
-//! writes. The lock of the interpreter is released while anything is read or computed.
+//! writes. The lock of the interpreter is released while anything is read or computed, and what may take long goes
+//! through one function (`job`), which an interrupt stops.
 
 mod arrow_abi;
 mod arrow_stream;
@@ -14,6 +15,7 @@ mod characterise;
 mod diagnose;
 mod error;
 mod fleet;
+mod job;
 mod names;
 mod origin;
 mod plan;

@@ -13,6 +13,7 @@ use crate::axes::{Axes, GivenAxes};
 use crate::bench::HeldBench;
 use crate::diagnose::{Given, options};
 use crate::error::{Failure, Outcome};
+use crate::job;
 use crate::origin::{json, manifest};
 use crate::record::HeldRecord;
 
@@ -65,7 +66,7 @@ pub(crate) fn plan(
             ..PlanOptions::default()
         },
     };
-    Ok(py.detach(|| answer(given, &request, command))?)
+    job::run(py, || answer(given, &request, command))
 }
 
 fn answer(given: Given<'_>, request: &Request, command: &str) -> Outcome<String> {

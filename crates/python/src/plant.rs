@@ -9,6 +9,7 @@ use gyrocal_record::{Input, Manifest, printable_path};
 use pyo3::prelude::*;
 
 use crate::error::{Class, Failure, Outcome};
+use crate::job;
 use crate::origin::{answer_text, json, manifest};
 use crate::plant_record::{GivenColumns, HeldPlantRecord};
 use crate::plant_series::{Series, SeriesArrays};
@@ -113,7 +114,7 @@ impl HeldPlant {
         let (record, later) = (record.get(), later.as_ref().map(Bound::get));
         let options = options(false_alarm)?;
         let manifest = self.manifest(options.seed, inputs, command);
-        let (text, page, series) = py.detach(|| self.answer(record, later, &options, manifest))?;
+        let (text, page, series) = job::run(py, || self.answer(record, later, &options, manifest))?;
         Ok((text, page, series.arrays(py)?))
     }
 
@@ -130,7 +131,7 @@ impl HeldPlant {
         let named = |held: &Bound<'py, HeldPlantRecord>| held.get().named.clone();
         let (record, later) = (named(record), later.as_ref().map(named));
         let manifest = self.manifest(0, inputs, command);
-        let (text, series) = py.detach(|| -> Outcome<_> {
+        let (text, series) = job::run(py, || {
             let fit = fit(&self.plant, record, later, first_rows, &mut |_, _| ())?;
             let text = json(&ResultFile::new(manifest, &fit.answer))?;
             Ok((text, Series::of(&fit.fitted)?))

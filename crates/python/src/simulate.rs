@@ -1,7 +1,9 @@
 //! Simulation of a scenario.
 
+use std::ops::ControlFlow;
 use std::path::PathBuf;
 
+use gyrocal_inference::stop;
 use gyrocal_record::Input;
 use gyrocal_truth::{Scenario, TruthReport, simulate_watched};
 use pyo3::prelude::*;
@@ -9,6 +11,7 @@ use sha2::{Digest, Sha256};
 
 use crate::bench::{HeldBench, toml_of_json};
 use crate::error::{Failure, Outcome};
+use crate::job;
 use crate::origin::{json, manifest};
 use crate::record::HeldRecord;
 
@@ -27,7 +30,7 @@ pub(crate) fn simulate(
     name: &str,
     command: &str,
 ) -> PyResult<(HeldRecord, HeldBench, String)> {
-    Ok(py.detach(|| {
+    job::run(py, || {
         let (mut scenario, input) = scenario(path, tables)?;
         if let Some(seed) = seed {
             if seed > SEED_MAX {
@@ -36,7 +39,7 @@ pub(crate) fn simulate(
             }
             scenario.seed = seed;
         }
-        let simulation = simulate_watched(&scenario, &[], |_| ()).map_err(|error| Failure {
+        let simulation = simulate_watched(&scenario, &[], stopped).map_err(|error| Failure {
             message: format!("{}: {error}", input.path),
             ..Failure::default()
         })?;
@@ -46,7 +49,15 @@ pub(crate) fn simulate(
         let bench = simulation.bench.to_toml(bench_name.as_ref())?;
         let record = HeldRecord::of_memory(simulation.record, name)?;
         Ok((record, HeldBench::of_memory(&bench, &bench_name)?, truth))
-    })?)
+    })
+}
+
+/// Whether a simulation ends at a row.
+fn stopped(_row: usize) -> ControlFlow<()> {
+    match stop::is_asked() {
+        true => ControlFlow::Break(()),
+        false => ControlFlow::Continue(()),
+    }
 }
 
 fn scenario(path: Option<PathBuf>, tables: Option<&str>) -> Outcome<(Scenario, Input)> {

@@ -14,6 +14,9 @@ pub enum Error {
         /// The expected value.
         expected: String,
     },
+    /// What watches the simulation ended it.
+    #[error("the simulation was stopped before its end")]
+    Stopped,
     /// There is no such effect.
     #[error("found the unknown effect `{id}`, expected the id of an effect; {advice}")]
     UnknownEffect {

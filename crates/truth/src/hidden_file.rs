@@ -145,7 +145,7 @@ fn located(
             let found = there(&span);
             source.error(InputErrorKind::OutOfRange, span, found, expected, "")
         }
-        other @ Error::InvalidScenario { .. } => source.error(
+        other @ (Error::InvalidScenario { .. } | Error::Stopped) => source.error(
             InputErrorKind::OutOfRange,
             id.clone(),
             there(id),

@@ -1,5 +1,7 @@
 //! A scenario simulated exactly.
 
+use core::ops::ControlFlow;
+
 use gyrocal_record::{Bench, Record};
 
 use crate::attitude::Attitude;
@@ -73,19 +75,19 @@ pub fn simulate(scenario: &Scenario) -> Result<Simulation, Error> {
 ///
 /// [`Error::InvalidScenario`] if a value of the scenario makes no sense.
 pub fn simulate_with(scenario: &Scenario, terms: &[Term]) -> Result<Simulation, Error> {
-    simulate_watched(scenario, terms, |_| ())
+    simulate_watched(scenario, terms, |_| ControlFlow::Continue(()))
 }
 
 /// As [`simulate_with`]; reports after each row of the regular grid how many of
-/// [`Scenario::grid_rows`] are done.
+/// [`Scenario::grid_rows`] are done, and ends where it is told to.
 ///
 /// # Errors
 ///
-/// [`Error::InvalidScenario`] if a value of the scenario makes no sense.
+/// [`Error::InvalidScenario`] if a value of the scenario makes no sense; [`Error::Stopped`] if `rows_done` breaks.
 pub fn simulate_watched(
     scenario: &Scenario,
     terms: &[Term],
-    mut rows_done: impl FnMut(usize),
+    mut rows_done: impl FnMut(usize) -> ControlFlow<()>,
 ) -> Result<Simulation, Error> {
     run(scenario, terms, &mut rows_done)
 }
@@ -94,7 +96,7 @@ pub fn simulate_watched(
 fn run(
     scenario: &Scenario,
     terms: &[Term],
-    rows_done: &mut dyn FnMut(usize),
+    rows_done: &mut dyn FnMut(usize) -> ControlFlow<()>,
 ) -> Result<Simulation, Error> {
     scenario.check()?;
     let temperature = scenario.temperature_course();
@@ -121,7 +123,9 @@ fn run(
             platform_c_enu.push(motion.platform_c_enu());
             drift_deg_per_h.push(motion.rate_deg_per_h(gyro_noise.walk_deg_per_h()));
         }
-        rows_done(row + 1);
+        if rows_done(row + 1).is_break() {
+            return Err(Error::Stopped);
+        }
     }
     let (record, outliers) = sampling.into_record();
     Ok(Simulation {

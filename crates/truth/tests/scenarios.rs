@@ -2,12 +2,13 @@
 
 #![cfg(test)]
 
+use std::ops::ControlFlow;
 use std::path::Path;
 
 use gyrocal_record::{Gravity, InputErrorKind, Prior};
 use gyrocal_truth::{
     Coefficients, Error, Hidden, InitialAttitude, Population, Scenario, Term, euler_rule, simulate,
-    simulate_with,
+    simulate_watched, simulate_with,
 };
 use sha2::{Digest, Sha256};
 
@@ -236,6 +237,19 @@ fn nonsense_in_memory_is_refused() {
         assert!(matches!(error, Error::InvalidScenario { .. }), "{error}");
         assert_eq!(euler_rule(&scenario).unwrap_err(), error);
     }
+}
+
+#[test]
+fn a_simulation_ends_at_the_row_where_it_is_told_to() {
+    let mut rows = 0;
+    let found = simulate_watched(&short(), &[], |row| {
+        rows = row;
+        match row {
+            7 => ControlFlow::Break(()),
+            _ => ControlFlow::Continue(()),
+        }
+    });
+    assert_eq!((found.err(), rows), (Some(Error::Stopped), 7));
 }
 
 #[test]

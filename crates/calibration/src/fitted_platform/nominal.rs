@@ -4,6 +4,7 @@ use std::borrow::Cow;
 
 use gyrocal::{Chart, FilterSettings};
 use gyrocal_hypothesis::ExtraColumns;
+use gyrocal_inference::stop;
 
 use super::{FittedPlatform, NoiseModel, Parts, of_site, walks};
 use crate::coefficients::PARAMETERS;
@@ -42,11 +43,11 @@ impl<'a> FittedPlatform<'a> {
         options: &Options,
         noise: &NoiseModel,
     ) -> Result<Self, CalibrationError> {
-        best_fit(
+        stop::finished(best_fit(
             |start| guess(run, options, noise, start),
             |guess| Self::nominal_from(run, axes, options, noise, guess),
             |fit| (fit.solution.cost, fit.solution.values),
-        )
+        ))
     }
 
     /// The same from the usual start only, however poor the fit: quicker where the record fits no model.
@@ -62,7 +63,7 @@ impl<'a> FittedPlatform<'a> {
             let guessed = guess(run, options, noise, start)?;
             Self::nominal_from(run, None, options, noise, guessed.guess)
         };
-        from(Start::FILTERED).or_else(|_| from(Start::CAREFUL))
+        stop::finished(from(Start::FILTERED).or_else(|_| from(Start::CAREFUL)))
     }
 
     fn nominal_from(

@@ -3,7 +3,11 @@
 use std::path::Path;
 
 use gyrocal::EstimationError;
-use gyrocal_calibration::{CalibrationError, Consistency, Options, calibrate};
+use gyrocal_calibration::{
+    CalibrationError, Consistency, FittedPlatform, Method, NoiseModel, Options, Run, calibrate,
+    calibrate_with_budget,
+};
+use gyrocal_inference::Stop;
 use gyrocal_record::{Bench, Record};
 use gyrocal_truth::{Coefficients, InitialAttitude, Scenario, euler_rule, simulate};
 use nalgebra::{SMatrix, SVector};
@@ -36,6 +40,43 @@ fn clean_records_of_another_simulator_fit() {
                 "{name}"
             );
         }
+    }
+}
+
+#[test]
+fn a_job_that_is_stopped_has_no_coefficients() {
+    let (record, bench) = case("S01");
+    let run = Run {
+        record: &record,
+        bench: &bench,
+    };
+    let is_stopped = |error: Option<CalibrationError>| {
+        assert!(
+            matches!(error, Some(CalibrationError::Stopped(_))),
+            "{error:?}"
+        );
+    };
+    for options in [Options::default(), Options::streaming()] {
+        let stop = Stop::default();
+        stop.ask();
+        stop.over(|| {
+            is_stopped(calibrate(&record, &bench, &options, |_| ()).err());
+            is_stopped(FittedPlatform::nominal(&run, &options, &NoiseModel::default()).err());
+            is_stopped(calibrate_with_budget(&[run], &options).err());
+        });
+        // After the initial guess, or some rows of the filter.
+        let (stop, mut last) = (Stop::default(), 0);
+        let progress = |row| {
+            last = row;
+            if row > 0 {
+                stop.ask();
+            }
+        };
+        is_stopped(
+            stop.over(|| calibrate(&record, &bench, &options, progress))
+                .err(),
+        );
+        assert!(options.method == Method::Batch || last == 1024, "{last}");
     }
 }
 

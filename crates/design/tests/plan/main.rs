@@ -3,10 +3,13 @@
 
 mod several;
 
+use std::time::{Duration, Instant};
+
 use gyrocal_calibration::{NoiseModel, Options, Run, calibrate_runs};
 use gyrocal_design::{
     Aim, DesignError, Goal, NamedCause, PlanOptions, PlanResult, Proposal, compare, plan,
 };
+use gyrocal_hypothesis::Stop;
 use gyrocal_record::{GimbalLimits, Prior};
 use gyrocal_truth::{Coefficients, Hidden, InitialAttitude, Scenario, Simulation, simulate};
 
@@ -69,6 +72,36 @@ fn planned(
     let noise = NoiseModel::default();
     let fitted = NamedCause::fitted(named, &run(first), &noise, &Options::default())?;
     plan(&fitted, &run(first), named, options)
+}
+
+#[test]
+fn a_search_that_is_stopped_plans_nothing() {
+    let first = simulate(&scenario(23)).unwrap();
+    let noise = NoiseModel::default();
+    let fitted = NamedCause::fitted(&[], &run(&first), &noise, &Options::default()).unwrap();
+    let stop = Stop::default();
+    let found = std::thread::scope(|scope| {
+        let ask = || {
+            std::thread::sleep(Duration::from_millis(300));
+            stop.ask();
+            Instant::now()
+        };
+        let asked = scope.spawn(ask);
+        // Of a goal that takes a search for each duration.
+        let options = PlanOptions {
+            durations_s: (1..200).map(|hours| 3600.0 * f64::from(hours)).collect(),
+            ..PlanOptions::default()
+        };
+        let found = stop.over(|| plan(&fitted, &run(&first), &[], &options));
+        (found, asked.join().unwrap().elapsed())
+    });
+    assert!(
+        matches!(found.0, Err(DesignError::Stopped(_))),
+        "{:?}",
+        found.0
+    );
+    // All threads of the search have ended.
+    assert!(found.1 < Duration::from_secs(2), "{:?}", found.1);
 }
 
 #[test]

@@ -4,7 +4,7 @@ use gyrocal::EFFECTS;
 use gyrocal::effect::EffectKind;
 use gyrocal::generated::platform::DRIFT;
 use gyrocal_calibration::{DETERMINED, FittedPlatform, GyroAxes, NoiseModel, Run, rows};
-use gyrocal_hypothesis::{FittedModel, Selection, fit_with};
+use gyrocal_hypothesis::{FittedModel, Selection, fit_with, stop};
 use gyrocal_record::{Coefficient, FittedEffect, FittedEffects, FittedParameter};
 
 use super::noise_audited_fit::noise_audited_fit;
@@ -56,10 +56,12 @@ pub fn fit_effects(
         &declared,
         &AuditOptions::with_share(shares.noise_audit),
         &options.calibration,
-    )?;
+    );
+    let audited = stop::finished(audited)?;
     let rows = rows(run.record, audited.nominal.covariates());
     let search = search_options(options, &shares, 0);
-    let found = fit_with(audited.nominal, rows, &selection, &search)?;
+    let found = fit_with(audited.nominal, rows, &selection, &search);
+    let found = stop::finished(found.map_err(DiagnosisError::from))?;
     let described = found.effects.iter().zip(&selection.effects);
     Ok(FittedEffects {
         effects: described

@@ -1,6 +1,7 @@
 //! Validation of a diagnosis on a later record of the same platform.
 
 use gyrocal_calibration::{FittedPlatform, GyroAxes, NoiseModel, Run};
+use gyrocal_hypothesis::stop;
 use gyrocal_record::{Bench, SetupProblem};
 use gyrocal_setup::PlatformKind;
 
@@ -94,8 +95,10 @@ pub fn predict_later(
         ..NoiseModel::default()
     };
     let audit = AuditOptions::with_share(shares(options.false_alarm_probability).noise_audit);
-    let fitted = noise_audited_fit(later, axes, &assumed, &audit, &options.calibration)?.nominal;
-    Ok(predict(nominal, extended, first, &fitted, later)?)
+    let fitted = noise_audited_fit(later, axes, &assumed, &audit, &options.calibration);
+    let fitted = stop::finished(fitted)?.nominal;
+    let predicted = predict(nominal, extended, first, &fitted, later);
+    stop::finished(predicted.map_err(DiagnosisError::from))
 }
 
 /// A problem of the later record, told as such.

@@ -6,6 +6,7 @@ use gyrocal::generated::platform::DRIFT;
 use gyrocal_calibration::{
     CalibrationError, FittedPlatform, GyroAxes, NoiseModel, Run, joined_record, work,
 };
+use gyrocal_hypothesis::stop;
 use gyrocal_record::{Bench, Record, SetupProblem};
 
 use super::answer::{both, record_summary, records_summary};
@@ -61,7 +62,14 @@ pub fn diagnose_records(
     options: &DiagnoseOptions,
     mut watch: impl FnMut(Stage),
 ) -> Result<RecordsDiagnosis, DiagnosisError> {
-    let watch: &mut dyn FnMut(Stage) = &mut watch;
+    stop::finished(together_and_alone(records, options, &mut watch))
+}
+
+fn together_and_alone(
+    records: Vec<RecordToDiagnose<'_>>,
+    options: &DiagnoseOptions,
+    watch: &mut dyn FnMut(Stage),
+) -> Result<RecordsDiagnosis, DiagnosisError> {
     let sound = sound_records(records, options)?;
     let mut alone = Vec::with_capacity(sound.len());
     for one in &sound {
@@ -107,7 +115,8 @@ pub fn diagnose_together(
     options: &DiagnoseOptions,
     mut watch: impl FnMut(Stage),
 ) -> Result<Diagnosis<'static>, DiagnosisError> {
-    jointly(&sound_records(records, options)?, options, &mut watch)
+    let sound = sound_records(records, options)?;
+    stop::finished(jointly(&sound, options, &mut watch))
 }
 
 fn sound_records<'a>(

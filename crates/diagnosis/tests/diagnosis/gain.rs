@@ -2,8 +2,12 @@
 
 use gyrocal::generated::catalogue::PARAMETERS;
 use gyrocal_calibration::{FittedPlatform, NoiseModel, Run};
-use gyrocal_diagnosis::{DiagnoseOptions, Diagnosis, LaterPrediction, diagnose, predict_later};
-use gyrocal_hypothesis::ModelExtension;
+use gyrocal_diagnosis::{
+    DiagnoseOptions, Diagnosis, DiagnosisError, Gate, LaterPrediction, RecordToDiagnose, Stage,
+    diagnose, diagnose_records, diagnose_watched, fit_effects, predict_later,
+};
+use gyrocal_hypothesis::{ModelExtension, Stop};
+use gyrocal_setup::PlatformKind;
 use gyrocal_truth::{Coefficients, Hidden, InitialAttitude, Scenario, Simulation, simulate};
 
 /// A day or more at a random attitude.
@@ -83,6 +87,62 @@ const OF_TEMPERATURE: f64 = 1e-4;
 
 /// Two days with a temperature of this mean and this daily wave. It acts about `about_c`, and with a play to either
 /// side.
+#[test]
+fn a_diagnosis_that_is_stopped_at_any_stage_has_no_answer() {
+    let hidden = [Hidden::new("gyro_y.g_z", &[("size", 0.01)]).unwrap()];
+    let simulation = simulation(5, 1.0, &hidden);
+    let run = Run {
+        record: &simulation.record,
+        bench: &simulation.bench,
+    };
+    let options = DiagnoseOptions::default();
+    let gate = || Gate::new(PlatformKind::Stabilised, &run, &options.calibration);
+    let is_stopped = |error: Option<DiagnosisError>| {
+        assert!(
+            matches!(error, Some(DiagnosisError::Stopped(_))),
+            "{error:?}"
+        );
+    };
+    for at in [
+        Stage::Audit,
+        Stage::Search,
+        Stage::Validation,
+        Stage::Answer,
+    ] {
+        let stop = Stop::default();
+        let watch = |stage| {
+            if stage == at {
+                stop.ask();
+            }
+        };
+        let found = stop.over(|| diagnose_watched(gate(), run.bench, &options, watch));
+        is_stopped(found.err());
+        // Together and alone.
+        let stop = Stop::default();
+        let watch = |stage| {
+            if stage == at {
+                stop.ask();
+            }
+        };
+        let record = |name: &str| RecordToDiagnose {
+            name: name.to_owned(),
+            gate: gate(),
+            bench: run.bench,
+        };
+        let records = vec![record("one"), record("other")];
+        let found = stop.over(|| diagnose_records(records, &options, watch));
+        is_stopped(found.err());
+    }
+    let mut found = diagnose(run.record, run.bench, &options).unwrap();
+    let stop = Stop::default();
+    stop.ask();
+    stop.over(|| {
+        is_stopped(diagnose(run.record, run.bench, &options).err());
+        is_stopped(found.validate(&run, &options).err());
+        is_stopped(fit_effects(&run, None, &[], &options).err());
+    });
+}
+
 fn warm(seed: u64, [mean_c, wave_k]: [f64; 2], about_c: f64, half_play_k: f64) -> Simulation {
     let mut made = simulation(seed, 2.0, &[]);
     let turns = made.record.time_s.iter().map(|time_s| time_s / 86_400.0);

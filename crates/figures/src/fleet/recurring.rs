@@ -91,7 +91,7 @@ fn fleet(
         seed,
         ..RecurrenceOptions::default()
     };
-    let found = recurring(&units, &options);
+    let found = recurring(&units, &options)?;
     let tested = tables.iter().map(|table| table.effects.len()).max();
     let right = found.iter().filter(|one| {
         cause.is_some() && (one.effect == effect || one.alternatives.contains(&effect))

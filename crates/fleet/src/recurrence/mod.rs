@@ -20,7 +20,7 @@ mod simulated;
 
 use std::collections::BTreeSet;
 
-use gyrocal_hypothesis::ScoreTable;
+use gyrocal_hypothesis::{ScoreTable, Stopped, stop};
 
 use crate::answer::RecurringCause;
 use naming::{Naming, Tested};
@@ -58,19 +58,25 @@ impl Default for RecurrenceOptions {
 }
 
 /// The effects that recur.
-#[must_use]
-pub fn recurring(units: &[UnitRecords<'_>], options: &RecurrenceOptions) -> Vec<RecurringCause> {
-    let mut tested: Vec<Tested> = effects(units)
-        .into_iter()
-        .map(|id| Tested::of(units, id, options))
-        .collect();
+///
+/// # Errors
+/// [`Stopped`] if the job was asked to end.
+pub fn recurring(
+    units: &[UnitRecords<'_>],
+    options: &RecurrenceOptions,
+) -> Result<Vec<RecurringCause>, Stopped> {
+    let tested = effects(units).into_iter().map(|id| {
+        stop::check()?;
+        Ok(Tested::of(units, id, options))
+    });
+    let mut tested: Vec<Tested> = tested.collect::<Result<_, Stopped>>()?;
     tested.sort_by(|a, b| b.evidence.ln_e.total_cmp(&a.evidence.ln_e));
     let naming = Naming {
         units,
         tested: &tested,
         options,
     };
-    naming.discoveries()
+    stop::finished(naming.discoveries())
 }
 
 /// Ids of all effects that some record shows, in the order of the first record that shows each.

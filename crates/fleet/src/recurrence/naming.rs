@@ -1,6 +1,6 @@
 //! Names of the causes whose evidence stands.
 
-use gyrocal_hypothesis::ScoreTable;
+use gyrocal_hypothesis::{ScoreTable, Stopped, stop};
 use gyrocal_statistics::deviates::Draw;
 use gyrocal_statistics::math::{exp, ln};
 
@@ -66,17 +66,25 @@ impl Naming<'_> {
     }
 
     /// The effects that recur.
-    pub(super) fn discoveries(&self) -> Vec<RecurringCause> {
+    ///
+    /// # Errors
+    /// [`Stopped`].
+    pub(super) fn discoveries(&self) -> Result<Vec<RecurringCause>, Stopped> {
         let first = self.limit(1);
         let Some(best) = self.tested.iter().find(|one| one.p_value <= first) else {
-            return Vec::new();
+            return Ok(Vec::new());
         };
         let mut named = vec![best];
         while let Some(next) = self.next(&named) {
+            stop::check()?;
             named.push(next);
         }
         let own = self.needed(&named);
-        own.iter().map(|one| self.describe(one, &own)).collect()
+        let described = own.iter().map(|one| {
+            stop::check()?;
+            Ok(self.describe(one, &own))
+        });
+        described.collect()
     }
 
     /// The effect with the most evidence beside those that are named, if it is enough.

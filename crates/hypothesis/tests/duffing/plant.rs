@@ -2,7 +2,7 @@
 
 use gyrocal_hypothesis::{
     Column, Covariate, FittedModel, ModelExtension, Plant, RateNoise, RateNoiseFit, Singular,
-    StateJump, WeightInputs,
+    StateJump, Stopped, WeightInputs,
 };
 use gyrocal_scalar::Element;
 use gyrocal_scalar::effect::{
@@ -214,6 +214,12 @@ pub(crate) struct NotObservable;
 
 impl From<Singular> for NotObservable {
     fn from(_: Singular) -> Self {
+        Self
+    }
+}
+
+impl From<Stopped> for NotObservable {
+    fn from(_: Stopped) -> Self {
         Self
     }
 }

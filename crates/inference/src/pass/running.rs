@@ -4,9 +4,11 @@ use gyrocal_estimation::EstimationError;
 
 use super::{Made, Pass, Taken, Watch, Whitened};
 use crate::column::Column;
+use crate::error::PassError;
 use crate::filter::Filter;
 use crate::record::{Layout, LinearisedRecord, LinearisedRows, OutputOf, StepOf};
 use crate::small::{add_triangle, dot};
+use crate::stop;
 
 /// What a column is in a pass.
 enum Place {
@@ -109,12 +111,13 @@ impl<'a> Running<'a> {
         block: &LinearisedRows,
         rows: usize,
         watch: &mut dyn Watch,
-    ) -> Result<(), EstimationError> {
+    ) -> Result<(), PassError> {
         for index in 0..block.rows() {
             let row = block.first + index;
             if row >= rows {
                 break;
             }
+            stop::check_at(row)?;
             watch.at(row, &self.filter);
             for output in 0..self.layout.outputs {
                 let own = block.output(index, output);

@@ -1,10 +1,10 @@
 //! A short record of a pendulum with gaps, and Gauss-Newton steps on it.
 
 use chacha20::ChaCha12Rng;
-use gyrocal_estimation::{EstimationError, Integration, Manifold};
+use gyrocal_estimation::{Integration, Manifold};
 use gyrocal_inference::{
-    Column, ExtraColumns, FurtherNoise, NoiseScore, Pass, Reduced, Series, Smoothed, Trajectory,
-    Walks,
+    Column, ExtraColumns, FurtherNoise, NoiseScore, Pass, PassError, Reduced, Series, Smoothed,
+    Trajectory, Walks,
 };
 use gyrocal_scalar::Model;
 use nalgebra::{Cholesky, DMatrix, DVector, Matrix2, Vector2};
@@ -262,15 +262,15 @@ impl<'a> Case<'a> {
         }
     }
 
-    pub(crate) fn reduce(&self) -> Result<Reduced, EstimationError> {
+    pub(crate) fn reduce(&self) -> Result<Reduced, PassError> {
         self.pass().reduce_with_cost(|_| ())
     }
 
-    pub(crate) fn smooth(&self, change: &[f64]) -> Result<Smoothed, EstimationError> {
+    pub(crate) fn smooth(&self, change: &[f64]) -> Result<Smoothed, PassError> {
         self.pass().smooth(change)
     }
 
-    pub(crate) fn noise_score(&self, factors: &[f64]) -> Result<NoiseScore, EstimationError> {
+    pub(crate) fn noise_score(&self, factors: &[f64]) -> Result<NoiseScore, PassError> {
         Pass {
             factors,
             ..self.pass()
@@ -283,7 +283,7 @@ impl<'a> Case<'a> {
         factors: &[f64],
         first: usize,
         change: &[f64],
-    ) -> Result<NoiseScore, EstimationError> {
+    ) -> Result<NoiseScore, PassError> {
         Pass {
             factors,
             ..self.pass()

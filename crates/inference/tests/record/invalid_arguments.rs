@@ -1,6 +1,7 @@
 //! Invalid arguments are errors.
 
 use gyrocal_estimation::EstimationError;
+use gyrocal_inference::PassError;
 
 use crate::chain::{Case, Chain, none};
 
@@ -58,7 +59,7 @@ fn arguments_without_meaning_are_errors() {
 
     // The cost of a trajectory needs noise that drives every state.
     let driven = "noise that drives every moving state";
-    let refused = |error: Option<EstimationError>, expected: &str| {
+    let refused = |error: Option<PassError>, expected: &str| {
         let error = error.map(|error| error.to_string()).unwrap_or_default();
         assert!(error.contains(expected), "{error}");
     };
@@ -84,7 +85,9 @@ fn arguments_without_meaning_are_errors() {
     let pass = chain.linearised(&lost, &parameters, &all, &no_columns);
     assert!(matches!(
         pass.reduce(),
-        Err(EstimationError::NotFinite { .. } | EstimationError::InvalidArgument { .. })
+        Err(PassError::Estimation(
+            EstimationError::NotFinite { .. } | EstimationError::InvalidArgument { .. }
+        ))
     ));
     for time_s in [f64::NAN, chain.times_s[4], chain.times_s[3]] {
         let kept = chain.times_s[5];
@@ -97,6 +100,6 @@ fn arguments_without_meaning_are_errors() {
     let pass = chain.linearised(&trajectory, &parameters, &all, &no_columns);
     assert_eq!(
         pass.reduce().err(),
-        Some(EstimationError::InvalidNoise { output: 1 })
+        Some(EstimationError::InvalidNoise { output: 1 }.into())
     );
 }

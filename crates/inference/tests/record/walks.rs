@@ -1,7 +1,7 @@
 //! Parameters that walk, against the joint Gaussian density of outputs and walks.
 
 use gyrocal_estimation::EstimationError;
-use gyrocal_inference::{Column, ExtraColumns, KeptRecord, Pass, Walk, Walks};
+use gyrocal_inference::{Column, ExtraColumns, KeptRecord, Pass, PassError, Walk, Walks};
 use gyrocal_scalar::Model;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
@@ -236,7 +236,9 @@ fn the_information_is_that_of_the_innovations_where_the_columns_have_changed() {
     let wrong = pass.noise_score_of_columns(&[1.0; 6], 0, &[1.0]);
     assert!(matches!(
         wrong,
-        Err(EstimationError::InvalidArgument { .. })
+        Err(PassError::Estimation(
+            EstimationError::InvalidArgument { .. }
+        ))
     ));
 }
 
@@ -391,7 +393,9 @@ fn walks_that_cannot_be_are_refused() {
             });
         assert!(matches!(
             pass.reduce(),
-            Err(EstimationError::InvalidArgument { .. })
+            Err(PassError::Estimation(
+                EstimationError::InvalidArgument { .. }
+            ))
         ));
     };
     let good = WALKS[0];

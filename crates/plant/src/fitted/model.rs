@@ -147,17 +147,15 @@ impl FittedModel for FittedPlant {
         let (lin, covariance) = (&self.solution.lin, &self.solution.covariance);
         let n = lin.rows.layout.states;
         let mut jumps = vec![None; self.record().len()];
-        lin.pass(&self.noise, &lines)
-            .jumps(|row, found| {
-                let cross = DMatrix::from_fn(lines.len(), n, |i, j| found.columns[i + 1][j]);
-                let projected = cross.tr_mul(&(covariance * &cross));
-                jumps[row] = Some(StateJump {
-                    score: DVector::from_row_slice(&found.columns[0]),
-                    information: DMatrix::from_row_slice(n, n, &found.information) - projected,
-                    outputs: DVector::from_row_slice(&found.readings),
-                });
-            })
-            .map_err(|_| PlantError::Singular)?;
+        lin.pass(&self.noise, &lines).jumps(|row, found| {
+            let cross = DMatrix::from_fn(lines.len(), n, |i, j| found.columns[i + 1][j]);
+            let projected = cross.tr_mul(&(covariance * &cross));
+            jumps[row] = Some(StateJump {
+                score: DVector::from_row_slice(&found.columns[0]),
+                information: DMatrix::from_row_slice(n, n, &found.information) - projected,
+                outputs: DVector::from_row_slice(&found.readings),
+            });
+        })?;
         // The states that a record begins with are free.
         for start in &self.record().starts {
             jumps[*start] = None;

@@ -142,11 +142,7 @@ impl NoiseProblem<'_> {
         let count = noise.process.len() + noise.correlated.len();
         noise.factors.truncate(declared);
         noise.factors.resize(declared + count, 1.0);
-        let score = self
-            .lin
-            .pass(noise, &[])
-            .noise_score()
-            .map_err(|_| PlantError::Singular)?;
+        let score = self.lin.pass(noise, &[]).noise_score()?;
         let all = noise.factors.len();
         let scales: Vec<f64> = (declared..all)
             .map(|place| score.information[place * all + place].sqrt().recip())

@@ -1,9 +1,12 @@
 //! Several records of one oscillator: information adds, initial states are those of each record.
 
+use std::time::{Duration, Instant};
+
 use gyrocal_answer::write_text;
-use gyrocal_hypothesis::FittedModel as _;
+use gyrocal_hypothesis::{FittedModel as _, Stop};
 use gyrocal_plant::{
-    FittedPlant, LoadedPlant, NamedRecord, PlantRecord, SearchOptions, diagnose, diagnose_records,
+    FittedPlant, LoadedPlant, NamedRecord, PlantError, PlantRecord, SearchOptions, compare,
+    diagnose, diagnose_records, fit, simulate,
 };
 use gyrocal_truth::plant::{Kind, Setting};
 use nalgebra::DMatrix;
@@ -43,6 +46,54 @@ fn information(fitted: &FittedPlant) -> DMatrix<f64> {
         .view((STATES, STATES), (count, count))
         .into_owned();
     own.try_inverse().unwrap()
+}
+
+#[test]
+fn a_job_that_is_stopped_has_no_answer() {
+    let plant = loaded(Kind::Duffing);
+    let records = records(&plant, 0.05);
+    let options = SearchOptions::default();
+    let is_stopped = |error: Option<PlantError>| {
+        assert!(matches!(error, Some(PlantError::Stopped(_))), "{error:?}");
+    };
+    let one = || records[0].clone();
+    let of_one = || diagnose(&plant, one().record, None, &options);
+    // At once, and while it searches: a whole diagnosis takes far longer.
+    for after_s in [0.0, 0.05] {
+        let stop = Stop::default();
+        std::thread::scope(|scope| {
+            let asked = scope.spawn(|| {
+                std::thread::sleep(Duration::from_secs_f64(after_s));
+                stop.ask();
+                Instant::now()
+            });
+            is_stopped(stop.over(of_one).err());
+            assert!(asked.join().unwrap().elapsed() < Duration::from_secs(1));
+        });
+    }
+    let stop = Stop::default();
+    stop.ask();
+    stop.over(|| {
+        is_stopped(diagnose_records(&plant, records.clone(), None, &options).err());
+        is_stopped(FittedPlant::nominal(&plant, one().record, &[]).err());
+        is_stopped(simulate(&plant, one(), None).err());
+        let both = [("one", plant.clone()), ("other", plant.clone())];
+        let both = both.map(|(name, plant)| (name.to_owned(), plant));
+        let read = |_: &_| Ok((one(), None));
+        is_stopped(compare(&both, read, 0, &mut |_, _| ()).err());
+    });
+    for at in ["parameters", "noise", "left-out parts", "later record"] {
+        let stop = Stop::default();
+        let mut told = |stage: &'static str, _| {
+            if stage == at {
+                stop.ask();
+            }
+        };
+        let later = Some(records[1].clone());
+        is_stopped(stop.over(|| fit(&plant, one(), later, 0, &mut told)).err());
+    }
+    let mut found = of_one().unwrap();
+    is_stopped(stop.over(|| found.forecast(vec![one()])).err());
 }
 
 #[test]
