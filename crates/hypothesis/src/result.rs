@@ -87,15 +87,13 @@ fn evaluate_with<F: FittedModel>(
         searched: own.searched,
     });
     let statistic = own_score.statistic;
-    let (reaches, inflation) = if by_fits {
-        let inflation = stage.fitted.inflation()?;
+    let (mut reach, mut inflation) = (vec![CONFIDENCE_SET_DEVIANCE; hypotheses.len()], 1.0);
+    if by_fits {
+        inflation = stage.fitted.inflation()?;
         let of = (&bank, hypotheses.as_slice());
         fit_rivals(compared, context, of, &mut scores, (statistic, inflation));
-        let reaches = reaches(&bank, &hypotheses, &scores, context.options.seed);
-        (reaches, inflation)
-    } else {
-        (vec![CONFIDENCE_SET_DEVIANCE; hypotheses.len()], 1.0)
-    };
+        reach = reaches(&bank, &hypotheses, &scores, context.options.seed);
+    }
     // The penalty of a jump is for the test of every step and not for its directions.
     let (penalised, tested) = if set.hypotheses[own.hypothesis].is_jump {
         (statistic - own.searched, statistic - own.searched)
@@ -122,7 +120,7 @@ fn evaluate_with<F: FittedModel>(
         &scores,
         &hypotheses,
         (own.hypothesis, penalised),
-        (&reaches, inflation),
+        (&reach, inflation),
         estimates,
     );
     if by_fits {

@@ -288,9 +288,7 @@ impl<'a> Dynamics<'a> {
             course.add_to_outputs(row, &mut predicted);
             lin.residuals
                 .extend(measured.iter().zip(&predicted).map(|(m, o)| m - o));
-            if !predicted.iter().all(|value| value.is_finite()) {
-                return Err(PlantError::NotFinite { row });
-            }
+            all_finite(row, &predicted)?;
             lin.variances.extend_from_slice(&variances);
             lin.out_by_states.extend_from_slice(&out.by_states);
             for by in out.by_parameters.chunks_exact(self.sizes.parameters.max(1)) {
@@ -306,9 +304,7 @@ impl<'a> Dynamics<'a> {
             let given = &points[(row + 1) * n..(row + 2) * n];
             lin.defects
                 .extend(given.iter().zip(&next).map(|(given, next)| given - next));
-            if !step.by_all.iter().all(|value| value.is_finite()) {
-                return Err(PlantError::NotFinite { row });
-            }
+            all_finite(row, &step.by_all)?;
             let interval_s = self.record.time_s[row + 1] - self.record.time_s[row];
             lin.step_s.push(interval_s);
             let first = by_noises.len();
@@ -389,4 +385,9 @@ impl<'a> Dynamics<'a> {
             }
         }
     }
+}
+
+fn all_finite(row: usize, values: &[f64]) -> Result<(), PlantError> {
+    let all = values.iter().all(|value| value.is_finite());
+    all.then_some(()).ok_or(PlantError::NotFinite { row })
 }

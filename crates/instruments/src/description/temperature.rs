@@ -29,6 +29,7 @@ named_units! {
     }
 }
 
+#[expect(clippy::derivable_impls, reason = "units of a table derive no default")]
 impl Default for TemperatureUnit {
     fn default() -> Self {
         Self::Celsius
