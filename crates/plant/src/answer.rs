@@ -14,6 +14,7 @@ use gyrocal_statistics::math::exp;
 use gyrocal_statistics::{chi_square_tail, p_of_least};
 
 use crate::catalogue::KNEE;
+use crate::correlation::{correlations, of_output};
 use crate::description::Kind;
 use crate::error::PlantError;
 use crate::fitted::FittedPlant;
@@ -21,7 +22,6 @@ use crate::knee_interval::profile;
 use crate::loaded::LoadedPlant;
 use crate::prediction::{errors, horizon_s};
 use crate::record::PlantRecord;
-use crate::series::{correlations, of_output};
 use gyrocal_words::plant::{coloured, is_coloured, unmodelled};
 
 /// Lags of the test of whiteness.

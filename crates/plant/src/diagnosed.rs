@@ -4,9 +4,10 @@ use gyrocal_answer::Answer;
 use gyrocal_hypothesis::Searched;
 use gyrocal_statistics::NORMAL_97_5;
 
+use crate::correlation::{correlations, of_output};
 use crate::error::PlantError;
 use crate::fitted::FittedPlant;
-use crate::series::{OutputCorrelation, RecordSeries, correlations, of_output};
+use crate::series::{OutputCorrelation, RecordSeries};
 
 /// A diagnosis with the fits that it rests on.
 pub struct Diagnosed {

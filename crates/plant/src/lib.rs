@@ -46,6 +46,7 @@ mod answer;
 mod catalogue;
 mod columns;
 mod comparison;
+mod correlation;
 mod cross_validation;
 pub mod description;
 mod diagnosed;

@@ -6,9 +6,9 @@ use gyrocal_hypothesis::{
 use nalgebra::{DMatrix, DVector};
 
 use super::FittedPlant;
+use crate::correlation::{inflation, of_output};
 use crate::error::PlantError;
 use crate::lines::of_parameters;
-use crate::series::{inflation, of_output};
 use crate::solve::Solver;
 
 /// Smallest range of a covariate that a dependence on it is looked for over, as a share of its size.
